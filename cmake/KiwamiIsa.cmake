@@ -1,0 +1,25 @@
+# One OBJECT library per instruction set: the only objects that are compiled with its flags.
+#
+#   kiwami_add_isa(<isa> SOURCES <file>... [FEATURES <flag>...])
+#
+# The flags name features, and src/dispatch/cpu_features.cpp tests exactly those. Link-time
+# optimisation is off, or the linker could move ISA code into baseline functions.
+
+include(CheckCXXCompilerFlag)
+
+set(KIWAMI_SSE_FEATURES -msse4.1)
+set(KIWAMI_AVX2_FEATURES -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt -mf16c)
+set(KIWAMI_AVX512_FEATURES ${KIWAMI_AVX2_FEATURES} -mavx512f -mavx512cd -mavx512bw -mavx512dq
+                           -mavx512vl)
+
+function(kiwami_add_isa isa)
+  cmake_parse_arguments(ARG "" "" "SOURCES;FEATURES" ${ARGN})
+  set(target kiwami_isa_${isa})
+  add_library(${target} OBJECT ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE kiwami_internal)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/${isa})
+  target_compile_definitions(${target} PRIVATE KIWAMI_ISA=${isa})
+  target_compile_options(${target} PRIVATE ${ARG_FEATURES} -fno-lto -fno-exceptions -fno-rtti
+                                           -fno-asynchronous-unwind-tables)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endfunction()

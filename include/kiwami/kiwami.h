@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Kiwami: acceleration structures for ray tracing. This header is all of the library.
+ */
+#ifndef KIWAMI_H
+#define KIWAMI_H
+
+#include "base.h"
+#include "device.h"
+#include "geometry.h"
+#include "scene.h"
+#include "trace.h"
+
+#endif

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Kiwami: scenes: geometries under one acceleration structure.
+ */
+#ifndef KIWAMI_SCENE_H
+#define KIWAMI_SCENE_H
+
+#include "geometry.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A reference-counted handle. It holds its device and its attached geometries. */
+typedef struct kiwami_scene kiwami_scene;
+
+/* What can be tuned, by kiwami_scene_set_parameter. The numbers are pinned; new ones are added. */
+enum {
+  KIWAMI_PARAMETER_BVH_WIDTH = 1,      /* 4, 8 or 16 children a node; 0: the device's default */
+  KIWAMI_PARAMETER_MERGE_LEAVES = 2,   /* 1: bottom nodes and leaf blocks are shared by masks; 0 */
+  KIWAMI_PARAMETER_MERGE_RING = 3,     /* how many open nodes the merging chooses among, 1 to 64 */
+  KIWAMI_PARAMETER_BIN_COUNT = 4,      /* bins of the surface area heuristic, 4 to 64 */
+  KIWAMI_PARAMETER_MAX_LEAF_SIZE = 5,  /* triangles a leaf, 1 to 16; 0: one full leaf block */
+  KIWAMI_PARAMETER_NODE_COST = 6,      /* cost of visiting a node, 0.01 to 100 */
+  KIWAMI_PARAMETER_LEAF_COST = 7,      /* cost of testing a leaf block, 0.01 to 100 */
+  KIWAMI_PARAMETER_VALIDATE_BUILD = 8  /* 1: commit runs the validator after each stage; 0 */
+};
+
+/* What a committed scene is made of. Counts are of the acceleration structure. */
+typedef struct kiwami_scene_info {
+  uint32_t struct_size;      /* set by the caller to sizeof(kiwami_scene_info) */
+  uint32_t bvh_width;        /* children a node */
+  uint32_t leaf_width;       /* triangles a leaf block */
+  uint32_t bvh_depth;        /* nodes on the longest path from the root to a leaf */
+  uint64_t triangle_count;   /* triangles that can be hit */
+  uint64_t skipped_count;    /* triangles removed for a NaN, infinite or out-of-range vertex */
+  uint64_t node_count;       /* wide nodes */
+  uint64_t leaf_block_count; /* leaf blocks */
+  uint64_t node_bytes;
+  uint64_t leaf_bytes;
+  uint64_t total_bytes;      /* everything the committed structure holds, the caller's shared
+                              * buffers aside, copied buffers included */
+  uint64_t peak_build_bytes; /* the most that the last commit held at once, total_bytes included */
+  double node_fill;          /* used node slots / all node slots, 0 to 1 */
+  double leaf_fill;          /* used leaf lanes / all leaf lanes, 0 to 1 */
+  double sah_cost;           /* surface area heuristic of the wide tree, relative to the root */
+  double build_seconds;      /* wall-clock time of the last commit */
+  float bounds_min[3];       /* of the triangles that can be hit; +inf when there are none */
+  float bounds_max[3];       /* -inf when there are none */
+} kiwami_scene_info;
+
+/* Makes an empty scene, which must be committed before it is traced.
+ *   scene     receives the handle, with one reference, or NULL on error
+ *   errors    INVALID_ARGUMENT: device or scene is NULL; OUT_OF_MEMORY
+ * [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_create(kiwami_device* device, kiwami_scene** scene);
+
+/* Adds a reference. NULL is ignored. [any thread]; since 0.1 */
+KIWAMI_API void kiwami_scene_retain(kiwami_scene* scene);
+
+/* Drops a reference; the last one ends the scene. NULL is ignored. [any thread]; since 0.1 */
+KIWAMI_API void kiwami_scene_release(kiwami_scene* scene);
+
+/* Attaches a geometry; the scene holds a reference to it. Takes effect with the next commit.
+ *   geometry_id   receives the number that hits report: the lowest that is free. May be NULL.
+ *   errors        INVALID_ARGUMENT: NULL, or a geometry of another device; OUT_OF_MEMORY
+ * [one thread per object]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_attach(kiwami_scene* scene, kiwami_geometry* geometry,
+                                             uint32_t* geometry_id);
+
+/* Detaches a geometry and frees its number. Takes effect with the next commit; until then the
+ * committed scene still holds it and hits still report it.
+ *   errors    INVALID_ARGUMENT: no geometry has this number
+ * [one thread per object]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_detach(kiwami_scene* scene, uint32_t geometry_id);
+
+/* Sets one of KIWAMI_PARAMETER_*. Takes effect with the next commit.
+ *   errors    INVALID_ARGUMENT: scene is NULL, an unknown parameter, a value outside its bounds
+ * [one thread per object]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_set_parameter(kiwami_scene* scene, uint32_t parameter,
+                                                    double value);
+
+/* The bounds (both allowed) and the default of one of KIWAMI_PARAMETER_*. Each pointer may be NULL.
+ *   errors    INVALID_ARGUMENT: an unknown parameter
+ * [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_parameter_bounds(uint32_t parameter, double* lowest,
+                                                 double* highest, double* preset);
+
+/* Builds the acceleration structure over the attached geometries, on the device's threads. On
+ * error the last committed structure stays in use.
+ *   errors    INVALID_ARGUMENT: a shared index buffer now holds an index at or beyond its vertex
+ *             count; TOO_LARGE: more than 2^32 - 2 triangles; OUT_OF_MEMORY; CALLBACK: the runner
+ *             failed; VALIDATION: KIWAMI_PARAMETER_VALIDATE_BUILD found a broken invariant
+ * [one thread per object]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_commit(kiwami_scene* scene);
+
+/* Says what the last commit made.
+ *   info      struct_size set by the caller; the fields that fit are filled
+ *   errors    INVALID_ARGUMENT: NULL, or struct_size below 8; INVALID_STATE: never committed
+ * [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_get_info(const kiwami_scene* scene, kiwami_scene_info* info);
+
+/* Checks every invariant of the committed structure: each triangle in exactly one leaf, each box
+ * around all that is below it, each slot and lane owned once, references and depth in range.
+ *   errors    INVALID_ARGUMENT: scene is NULL; INVALID_STATE: never committed; VALIDATION: the
+ *             sentence of kiwami_last_error names the node; OUT_OF_MEMORY
+ * [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_validate(const kiwami_scene* scene);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

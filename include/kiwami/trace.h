@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Kiwami: rays against a committed scene, in batches.
+ *
+ * Results are exact and the same to the bit on every ISA, node width and thread count:
+ * - a hit counts when tmin <= t <= tmax;
+ * - the closest hit is the least (t, instance, geometry, primitive);
+ * - of two triangles that share an edge, exactly one owns it: no ray slips between neighbours, and
+ *   none meets both;
+ * - any hit is true exactly when there is a closest hit;
+ * - a NaN anywhere in a ray, a zero or infinite direction, tmin > tmax, or an origin beyond
+ *   KIWAMI_MAX_COORDINATE is a miss.
+ */
+#ifndef KIWAMI_TRACE_H
+#define KIWAMI_TRACE_H
+
+#include "scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+  /* Ignore triangles seen from behind. A triangle is seen from its front when its vertices run
+   * counter-clockwise: when its normal (b - a) x (c - a) points against the ray. */
+  KIWAMI_RAY_CULL_BACK_FACES = 1u << 0,
+  /* Ignore triangles seen from the front. */
+  KIWAMI_RAY_CULL_FRONT_FACES = 1u << 1
+};
+
+/* A ray: the points origin + t * direction with tmin <= t <= tmax. The direction need not have
+ * length 1. 48 bytes, at any address. */
+typedef struct kiwami_ray {
+  float origin_x, origin_y, origin_z;
+  float tmin;
+  float direction_x, direction_y, direction_z;
+  float tmax;     /* may be infinite */
+  float time;     /* 0 to 1; for geometries that move */
+  uint32_t mask;  /* compared with the geometry's mask */
+  uint32_t flags; /* KIWAMI_RAY_* */
+  uint32_t id;    /* the caller's own; not read */
+} kiwami_ray;
+
+/* The answer to a ray. 36 bytes, at any address. A miss has t = +inf, ids of KIWAMI_INVALID_ID and
+ * zeros elsewhere. */
+typedef struct kiwami_hit {
+  float t;                           /* distance in units of the direction's length */
+  float u, v;                        /* the point is (1 - u - v) a + u b + v c */
+  float normal_x, normal_y, normal_z; /* (b - a) x (c - a), not normalised */
+  uint32_t primitive_id;             /* the triangle's number in its mesh */
+  uint32_t geometry_id;              /* the mesh's number in its scene */
+  uint32_t instance_id;              /* KIWAMI_INVALID_ID outside instances */
+} kiwami_hit;
+
+/* One field of an array of rays: element i is at data + i * stride. A stride of 0 gives all rays
+ * the same value. */
+typedef struct kiwami_input_field {
+  const void* data;
+  uint64_t stride;
+} kiwami_input_field;
+
+/* One field of an array of answers: element i goes to data + i * stride, stride at least 4 when
+ * there are several rays. data may be NULL: the field is not wanted. */
+typedef struct kiwami_output_field {
+  void* data;
+  uint64_t stride;
+} kiwami_output_field;
+
+/* Rays whose fields lie apart (a struct of arrays, a NumPy array, columns of the caller's own
+ * struct). */
+typedef struct kiwami_ray_fields {
+  uint32_t struct_size; /* bytes of this struct, set by kiwami_ray_fields_init */
+  uint32_t reserved;    /* 0 */
+  kiwami_input_field origin_x, origin_y, origin_z;          /* float */
+  kiwami_input_field direction_x, direction_y, direction_z; /* float */
+  kiwami_input_field tmin;  /* float; data NULL: 0 */
+  kiwami_input_field tmax;  /* float; data NULL: +inf */
+  kiwami_input_field time;  /* float; data NULL: 0 */
+  kiwami_input_field mask;  /* uint32; data NULL: all ones */
+  kiwami_input_field flags; /* uint32; data NULL: 0 */
+} kiwami_ray_fields;
+
+/* Answers whose fields go apart; each may be left out. */
+typedef struct kiwami_hit_fields {
+  uint32_t struct_size; /* bytes of this struct, set by kiwami_hit_fields_init */
+  uint32_t reserved;    /* 0 */
+  kiwami_output_field t, u, v;                         /* float */
+  kiwami_output_field normal_x, normal_y, normal_z;    /* float */
+  kiwami_output_field primitive_id, geometry_id, instance_id; /* uint32 */
+} kiwami_hit_fields;
+
+/* What a trace call may be told beyond the rays. */
+typedef struct kiwami_query {
+  uint32_t struct_size; /* bytes of this struct, set by kiwami_query_init */
+  uint32_t flags;       /* KIWAMI_QUERY_* */
+} kiwami_query;
+
+enum {
+  /* Trace on the calling thread alone, however many rays there are. */
+  KIWAMI_QUERY_CALLING_THREAD = 1u << 0
+};
+
+/* Fill a struct with its defaults: no fields; no flags.
+ *   size      sizeof the struct as the caller knows it
+ *   errors    INVALID_ARGUMENT: the pointer is NULL, or size is below 8
+ * [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_ray_fields_init(kiwami_ray_fields* rays, size_t size);
+KIWAMI_API kiwami_result kiwami_hit_fields_init(kiwami_hit_fields* hits, size_t size);
+KIWAMI_API kiwami_result kiwami_query_init(kiwami_query* query, size_t size);
+
+/* Finds the closest hit of each ray.
+ *   rays        count rays, ray_stride bytes apart (0: sizeof(kiwami_ray)); NULL only if count is 0
+ *   hits        receives count answers, hit_stride bytes apart (0: sizeof(kiwami_hit)); may not
+ *               overlap the rays
+ *   query       NULL for the defaults
+ * Large batches run on the device's threads, each ray's answer being the same as alone.
+ *   errors      INVALID_STATE: the scene was never committed; INVALID_ARGUMENT: an unknown query
+ *               flag; CALLBACK: the runner failed. With KIWAMI_DEVICE_VALIDATE also
+ *               INVALID_ARGUMENT: NULL, a stride too small, an extent that overflows.
+ * [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_closest_hit(const kiwami_scene* scene, const kiwami_ray* rays,
+                                            size_t ray_stride, kiwami_hit* hits,
+                                            size_t hit_stride, size_t count,
+                                            const kiwami_query* query);
+
+/* Finds out of each ray whether it has a hit.
+ *   occluded    receives count bytes, stride bytes apart (0: 1): 1 for a hit, 0 for none
+ * Otherwise as kiwami_closest_hit. [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_any_hit(const kiwami_scene* scene, const kiwami_ray* rays,
+                                        size_t ray_stride, uint8_t* occluded, size_t stride,
+                                        size_t count, const kiwami_query* query);
+
+/* As kiwami_closest_hit and kiwami_any_hit, with the fields of rays and answers apart.
+ *   errors      also INVALID_ARGUMENT: the data of an origin or a direction is NULL with count > 0
+ * [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_closest_hit_fields(const kiwami_scene* scene,
+                                                   const kiwami_ray_fields* rays,
+                                                   const kiwami_hit_fields* hits, size_t count,
+                                                   const kiwami_query* query);
+KIWAMI_API kiwami_result kiwami_any_hit_fields(const kiwami_scene* scene,
+                                               const kiwami_ray_fields* rays,
+                                               const kiwami_output_field* occluded, size_t count,
+                                               const kiwami_query* query);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The triangles of a scene as the stages below the scene see them: views of the meshes' buffers.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "math/bounds.h"
+
+namespace kiwami {
+
+/// One mesh. The buffers may lie at any address; no byte beyond the last element is read.
+struct TriangleMeshView {
+  const unsigned char* vertices;  ///< the first vertex
+  size_t vertex_stride;
+  size_t vertex_count;
+  const unsigned char* indices;  ///< the first triangle; nullptr: vertices 3i, 3i + 1, 3i + 2
+  size_t index_stride;
+  uint32_t triangle_count;
+  uint32_t first_id;  ///< the running id of triangle 0
+  uint32_t geometry_id;
+  uint32_t mask;
+
+  void indices_of(uint32_t primitive, uint32_t corner[3]) const {
+    if (indices) {
+      std::memcpy(corner, indices + primitive * index_stride, 3 * sizeof(uint32_t));
+    } else {
+      for (uint32_t k = 0; k < 3; ++k) corner[k] = 3 * primitive + k;
+    }
+  }
+
+  void corners_of(uint32_t primitive, Vec3f corner[3]) const {
+    uint32_t index[3];
+    indices_of(primitive, index);
+    for (int k = 0; k < 3; ++k) {
+      std::memcpy(&corner[k], vertices + index[k] * vertex_stride, sizeof(Vec3f));
+    }
+  }
+};
+
+/// All meshes of a scene, by rising first_id, without gaps.
+struct TriangleSource {
+  const TriangleMeshView* meshes;
+  uint32_t mesh_count;
+
+  const TriangleMeshView& mesh_of(uint32_t id) const {
+    uint32_t low = 0, high = mesh_count;
+    while (high - low > 1) {
+      const uint32_t middle = low + (high - low) / 2;
+      (meshes[middle].first_id <= id ? low : high) = middle;
+    }
+    return meshes[low];
+  }
+
+  void corners_of(uint32_t id, Vec3f corner[3]) const {
+    const TriangleMeshView& mesh = mesh_of(id);
+    mesh.corners_of(id - mesh.first_id, corner);
+  }
+};
+
+}  // namespace kiwami

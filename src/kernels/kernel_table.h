@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an ISA offers: one table of functions per ISA, chosen per device. Plain data only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kiwami/trace.h"
+#include "wide/wide_bvh.h"
+
+namespace kiwami {
+
+/// A strided run of rays and its answers. Rays and answers lie at any address.
+struct RayBatch {
+  const unsigned char* rays;  ///< kiwami_ray, ray_stride bytes apart
+  size_t ray_stride;
+  unsigned char* answers;  ///< kiwami_hit, or one uint8_t, or one uint32_t (see TraversalKernels)
+  size_t answer_stride;
+  size_t count;
+};
+
+/// Sums over a batch, added to what is there.
+struct TraversalCounters {
+  uint64_t node_visits;
+  uint64_t leaf_visits;
+  uint64_t accepted;           ///< triangles accepted on the way
+  uint64_t margin_violations;  ///< accepted hits whose t lies outside their own leaf's box distances;
+                               ///< any other number than 0 is a defect of the margin
+  uint64_t double_fallbacks;   ///< edge functions decided in double precision
+};
+
+using TraversalKernel = void (*)(const SceneView& scene, const RayBatch& batch);
+using CountingKernel = void (*)(const SceneView& scene, const RayBatch& batch,
+                                TraversalCounters& counters);
+
+/// The kernels of one node width; all null where the ISA has none.
+struct TraversalKernels {
+  TraversalKernel closest_hit;         ///< answers: kiwami_hit
+  TraversalKernel any_hit;             ///< answers: uint8_t, 1 or 0
+  TraversalKernel all_hits;            ///< answers: uint32_t, the number of accepted triangles
+  CountingKernel closest_hit_counted;  ///< the same answers, and the counters
+  CountingKernel any_hit_counted;
+};
+
+struct KernelTable {
+  uint32_t isa;                   ///< KIWAMI_ISA_*
+  TraversalKernels traversal[3];  ///< widths 4, 8, 16
+
+  const TraversalKernels& of_width(uint32_t width) const {
+    return traversal[width == 4 ? 0 : width == 8 ? 1 : 2];
+  }
+};
+
+}  // namespace kiwami
+
+// The one symbol of each ISA's objects.
+extern "C" {
+const kiwami::KernelTable* kiwami_scalar_kernel_table();
+const kiwami::KernelTable* kiwami_sse_kernel_table();
+const kiwami::KernelTable* kiwami_avx2_kernel_table();
+const kiwami::KernelTable* kiwami_avx512_kernel_table();
+}

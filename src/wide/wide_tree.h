@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The owner of an N-wide tree, made from a binary one: contraction, leaf-node merging, packing.
+#pragma once
+
+#include "bvh/binary_bvh.h"
+#include "bvh/triangle_source.h"
+#include "core/memory.h"
+#include "parallel/parallel.h"
+#include "wide/wide_bvh.h"
+
+namespace kiwami {
+
+struct WideTree {
+  uint32_t width = 0;       ///< children a node: 4, 8 or 16
+  uint32_t leaf_width = 0;  ///< triangles a leaf block; equals width
+  Array<unsigned char> nodes;
+  Array<unsigned char> leaves;
+  TreeView view{};
+  uint64_t node_count = 0;
+  uint64_t leaf_block_count = 0;
+  uint64_t used_slots = 0;  ///< node slots that are in some mask
+  uint64_t used_lanes = 0;  ///< leaf lanes that are in some mask
+  uint32_t depth = 0;       ///< nodes on the longest path from the root to a leaf
+  double sah_cost = 0.0;    ///< relative to the root box
+};
+
+struct WideTreeConfig {
+  uint32_t width = 8;
+  bool merge_leaves = true;
+  uint32_t merge_ring = 8;
+  float node_cost = 1.0f;
+  float leaf_cost = 1.0f;
+};
+
+/// Contracts a binary tree whose leaves own at most config.width triangles.
+WideTree build_wide_tree(const BinaryBvh& binary, const TriangleSource& source,
+                         const WideTreeConfig& config, Memory& memory, const Parallel& parallel);
+
+/// Checks every invariant of the tree: references and depth in range; each slot and lane owned by
+/// exactly one path; boxes (in the stored frame, rounded outwards) around all below; each of the
+/// primitive_count triangles in exactly one lane, with its original vertices; the root's view.
+/// Throws Error(VALIDATION) that names the node.
+void verify_wide_tree(const WideTree& tree, const TriangleSource& source, uint64_t primitive_count,
+                      Memory& memory);
+
+}  // namespace kiwami
