@@ -12,14 +12,27 @@
 
 namespace kiwami {
 
-/// The allocator of one device and its byte count. Safe to use from any thread.
+/// Where memory comes from: the caller's functions, or the C++ runtime's when they are null.
+struct Allocator {
+  kiwami_allocate allocate_function;
+  kiwami_deallocate deallocate_function;
+  void* user;
+
+  /// Throws Error(OUT_OF_MEMORY) that names the size. size may be 0: returns nullptr.
+  void* allocate(size_t size, size_t alignment) const;
+  void deallocate(void* memory, size_t size, size_t alignment) const noexcept;
+};
+
+/// An allocator with its byte count. Safe to use from any thread.
 class Memory {
  public:
-  /// With allocate == nullptr the C++ runtime's allocator serves.
-  Memory(kiwami_allocate allocate, kiwami_deallocate deallocate, void* user)
-      : allocate_(allocate), deallocate_(deallocate), user_(user) {}
+  Memory(kiwami_allocate allocate_function, kiwami_deallocate deallocate_function, void* user)
+      : allocator_{allocate_function, deallocate_function, user} {}
+  explicit Memory(const Allocator& allocator) : allocator_(allocator) {}
   Memory(const Memory&) = delete;
   Memory& operator=(const Memory&) = delete;
+
+  const Allocator& allocator() const { return allocator_; }
 
   /// Throws Error(OUT_OF_MEMORY) that names the size. size may be 0: returns nullptr.
   void* allocate(size_t size, size_t alignment);
@@ -31,9 +44,7 @@ class Memory {
   void reset_peak() { peak_.store(bytes_in_use(), std::memory_order_relaxed); }
 
  private:
-  kiwami_allocate allocate_;
-  kiwami_deallocate deallocate_;
-  void* user_;
+  Allocator allocator_;
   std::atomic<size_t> in_use_{0};
   std::atomic<size_t> peak_{0};
 };

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/memory.h"
+
+#include <cstdint>
+#include <new>
+
+#include "core/error.h"
+
+namespace kiwami {
+
+void* Allocator::allocate(size_t size, size_t alignment) const {
+  if (size == 0) return nullptr;
+  void* memory = allocate_function
+                     ? allocate_function(user, size, alignment)
+                     : ::operator new(size, std::align_val_t(alignment), std::nothrow);
+  if (!memory) {
+    throw Error(KIWAMI_ERROR_OUT_OF_MEMORY,
+                "allocation of %zu bytes at a multiple of %zu failed, expected memory", size,
+                alignment);
+  }
+  if (reinterpret_cast<uintptr_t>(memory) % alignment != 0) {
+    deallocate(memory, size, alignment);
+    throw Error(KIWAMI_ERROR_CALLBACK,
+                "allocate returned %p for %zu bytes, expected a multiple of %zu", memory, size,
+                alignment);
+  }
+  return memory;
+}
+
+void Allocator::deallocate(void* memory, size_t size, size_t alignment) const noexcept {
+  if (!memory) return;
+  if (allocate_function) {
+    deallocate_function(user, memory, size, alignment);
+  } else {
+    ::operator delete(memory, std::align_val_t(alignment));
+  }
+}
+
+void* Memory::allocate(size_t size, size_t alignment) {
+  void* memory = allocator_.allocate(size, alignment);
+  const size_t in_use = in_use_.fetch_add(size, std::memory_order_relaxed) + size;
+  size_t peak = peak_.load(std::memory_order_relaxed);
+  while (peak < in_use && !peak_.compare_exchange_weak(peak, in_use, std::memory_order_relaxed)) {
+  }
+  return memory;
+}
+
+void Memory::deallocate(void* memory, size_t size, size_t alignment) noexcept {
+  if (!memory) return;
+  allocator_.deallocate(memory, size, alignment);
+  in_use_.fetch_sub(size, std::memory_order_relaxed);
+}
+
+}  // namespace kiwami

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "parallel/parallel.h"
+
+#include <atomic>
+#include <exception>
+#include <thread>
+
+#include "core/error.h"
+#include "math/float_environment.h"
+
+#if defined(KIWAMI_TASKING_TBB)
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+#endif
+
+namespace kiwami {
+
+#if defined(KIWAMI_TASKING_TBB)
+struct Parallel::Arena {
+  explicit Arena(unsigned width) : tasks(static_cast<int>(width)) {}
+  tbb::task_arena tasks;
+};
+#else
+struct Parallel::Arena {};
+#endif
+
+namespace {
+
+/// How many indices run at once in a device's loops.
+unsigned width_of(unsigned thread_count, kiwami_parallel_runner runner, unsigned runner_width) {
+  if (runner) {
+    if (runner_width != 0) return runner_width;
+    // Unknown: at least two, or a machine with one processor would never call the runner.
+    const unsigned processors = std::thread::hardware_concurrency();
+    return processors > 2 ? processors : 2;
+  }
+#if defined(KIWAMI_TASKING_TBB)
+  if (thread_count != 0) return thread_count;
+  const int processors = tbb::info::default_concurrency();
+  return processors > 1 ? static_cast<unsigned>(processors) : 1;
+#else
+  static_cast<void>(thread_count);
+  return 1;
+#endif
+}
+
+void run_here(size_t count, kiwami_parallel_task task, void* data) {
+  const DefaultFloatEnvironment environment;
+  for (size_t index = 0; index < count; ++index) task(data, index);
+}
+
+/// One loop on the caller's runner. Its threads are not ours: no exception may reach them.
+class RunnerLoop {
+ public:
+  RunnerLoop(kiwami_parallel_task task, void* data) : task_(task), data_(data) {}
+
+  void run(kiwami_parallel_runner runner, void* user, size_t count) {
+    const int32_t status = runner(user, count, &RunnerLoop::call, this);
+    if (exception_) std::rethrow_exception(exception_);
+    if (status != 0) {
+      throw Error(KIWAMI_ERROR_CALLBACK, "runner returned %d, expected 0",
+                  static_cast<int>(status));
+    }
+    const size_t calls = calls_.load(std::memory_order_acquire);
+    if (calls != count) {
+      throw Error(KIWAMI_ERROR_CALLBACK, "runner made %zu calls of its task, expected %zu", calls,
+                  count);
+    }
+  }
+
+ private:
+  static void call(void* loop, size_t index) { static_cast<RunnerLoop*>(loop)->call(index); }
+
+  void call(size_t index) {
+    if (!has_failed_.load(std::memory_order_relaxed)) {
+      const DefaultFloatEnvironment environment;
+      try {
+        task_(data_, index);
+      } catch (...) {
+        if (!has_failed_.exchange(true)) exception_ = std::current_exception();
+      }
+    }
+    calls_.fetch_add(1, std::memory_order_release);
+  }
+
+  kiwami_parallel_task task_;
+  void* data_;
+  std::atomic<size_t> calls_{0};
+  std::atomic<bool> has_failed_{false};
+  std::exception_ptr exception_;
+};
+
+}  // namespace
+
+Parallel::Parallel(unsigned thread_count, kiwami_parallel_runner runner, void* runner_user,
+                   unsigned runner_width)
+    : runner_(runner),
+      runner_user_(runner_user),
+      width_(width_of(thread_count, runner, runner_width)) {
+#if defined(KIWAMI_TASKING_TBB)
+  if (!runner_ && width_ > 1) arena_ = std::make_unique<Arena>(width_);
+#endif
+}
+
+Parallel::~Parallel() = default;
+
+void Parallel::run(size_t count, kiwami_parallel_task task, void* data) const {
+  if (count <= 1 || width_ == 1) {
+    run_here(count, task, data);
+    return;
+  }
+  if (runner_) {
+    RunnerLoop(task, data).run(runner_, runner_user_, count);
+    return;
+  }
+#if defined(KIWAMI_TASKING_TBB)
+  arena_->tasks.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<size_t>(0, count, 1),
+        [&](const tbb::blocked_range<size_t>& range) {
+          const DefaultFloatEnvironment environment;
+          for (size_t index = range.begin(); index != range.end(); ++index) task(data, index);
+        },
+        tbb::simple_partitioner());
+  });
+#endif
+}
+
+}  // namespace kiwami
