@@ -6,10 +6,6 @@
 add_library(kiwami_options INTERFACE)
 target_compile_options(kiwami_options INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow
                                                 -Wpointer-arith -Wcast-qual)
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 sees uninitialised values inside its own AVX-512 header (GCC bug 105593).
-  target_compile_options(kiwami_options INTERFACE -Wno-psabi)
-endif()
 if(KIWAMI_WARNINGS_AS_ERRORS)
   target_compile_options(kiwami_options INTERFACE -Werror)
 endif()

@@ -8,8 +8,8 @@
  * - of two triangles that share an edge, exactly one owns it: no ray slips between neighbours, and
  *   none meets both;
  * - any hit is true exactly when there is a closest hit;
- * - a NaN anywhere in a ray, a zero or infinite direction, tmin > tmax, or an origin beyond
- *   KIWAMI_MAX_COORDINATE is a miss.
+ * - a NaN in origin, direction, tmin or tmax, a zero or infinite direction, tmin > tmax, or an
+ *   origin beyond KIWAMI_MAX_COORDINATE is a miss.
  */
 #ifndef KIWAMI_TRACE_H
 #define KIWAMI_TRACE_H

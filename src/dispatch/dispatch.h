@@ -15,16 +15,20 @@ uint32_t runnable_isas();
 /// The same for each ISA that this build contains.
 uint32_t built_isas();
 
-/// The table of an ISA that is both built and runnable; nullptr for any other.
-const KernelTable* kernel_table_of(uint32_t isa);
+/// The best ISA that is both built and runnable.
+uint32_t best_isa();
 
-/// The kernels of a width: those of the ISA, or the scalar ones where it has none.
-const TraversalKernels& kernels_of(uint32_t isa, uint32_t width);
+/// The kernels of a width: those of the ISA, or the scalar ones where it has none. The ISA must be
+/// both built and runnable.
+TraversalKernels kernels_of(uint32_t isa, uint32_t width);
+
+/// Bit (1 << width) for each width of which the ISA has its own kernels. The ISA must be built.
+uint32_t native_widths_of(uint32_t isa);
 
 /// The width of scenes that do not choose one.
 uint32_t default_width_of(uint32_t isa);
 
-const char* isa_name(uint32_t isa);  ///< "avx2"; nullptr for a number that is none
+const char* isa_name(uint32_t isa);                 ///< "avx2"; nullptr for a number that is none
 bool isa_of_name(const char* name, uint32_t& isa);  ///< also "auto"; false for an unknown name
 
 }  // namespace kiwami

@@ -24,8 +24,8 @@ struct TraversalCounters {
   uint64_t node_visits;
   uint64_t leaf_visits;
   uint64_t accepted;           ///< triangles accepted on the way
-  uint64_t margin_violations;  ///< accepted hits whose t lies outside their own leaf's box distances;
-                               ///< any other number than 0 is a defect of the margin
+  uint64_t margin_violations;  ///< accepted hits that lie before the ray enters their own leaf's
+                               ///< box; any other number than 0 is a defect of the margin
   uint64_t double_fallbacks;   ///< edge functions decided in double precision
 };
 
@@ -53,10 +53,10 @@ struct KernelTable {
 
 }  // namespace kiwami
 
-// The one symbol of each ISA's objects.
+// The one symbol of each ISA's objects. They fill the caller's table, so that they hold no statics.
 extern "C" {
-const kiwami::KernelTable* kiwami_scalar_kernel_table();
-const kiwami::KernelTable* kiwami_sse_kernel_table();
-const kiwami::KernelTable* kiwami_avx2_kernel_table();
-const kiwami::KernelTable* kiwami_avx512_kernel_table();
+void kiwami_scalar_kernel_table(kiwami::KernelTable* table);
+void kiwami_sse_kernel_table(kiwami::KernelTable* table);
+void kiwami_avx2_kernel_table(kiwami::KernelTable* table);
+void kiwami_avx512_kernel_table(kiwami::KernelTable* table);
 }

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernels/kernels.h"
+
+extern "C" void KIWAMI_KERNEL_TABLE_GETTER(kiwami::KernelTable* table) {
+  using namespace kiwami;
+  *table = {KIWAMI_ISA_AVX512,
+            {TraversalKernels{}, KIWAMI_ISA::kernels_w8(), KIWAMI_ISA::kernels_w16()}};
+}

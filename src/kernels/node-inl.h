@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// One ray against the N boxes of a wide node.
+#pragma once
+
+#include "kernels/ray-inl.h"
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+/// The slots whose boxes the ray meets between its tmin and best, and the distances at which it
+/// enters them. No operand is NaN: offsets are finite and boxes are bounded.
+template <int N>
+inline uint32_t test_boxes(const WideNode<N>& node, const SlabRay<N>& ray, vfloat<N> best,
+                           vfloat<N>& entry) {
+  const auto near_distance = [&](int axis) {
+    return multiply_add(load<N>(node.bounds[axis][ray.near_side[axis]]), ray.reciprocal[axis],
+                        ray.near_offset[axis]);
+  };
+  const auto far_distance = [&](int axis) {
+    return multiply_add(load<N>(node.bounds[axis][1 - ray.near_side[axis]]), ray.reciprocal[axis],
+                        ray.far_offset[axis]);
+  };
+  entry = max(max(near_distance(0), near_distance(1)), max(near_distance(2), ray.tmin));
+  const vfloat<N> exit = min(min(far_distance(0), far_distance(1)), min(far_distance(2), best));
+  return less_equal(entry, exit);
+}
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a traversal reports of itself: nothing, or counts.
+#pragma once
+
+#include "kernels/kernel_table.h"
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+struct NoProbe {
+  void on_node() {}
+  void on_leaf(float) {}
+  void on_accept(float) {}
+  void on_double_fallback() {}
+};
+
+/// Counts, and checks what the order of visits rests on: no accepted hit lies before the distance
+/// at which the ray enters the box of its own leaf.
+struct CountingProbe {
+  TraversalCounters& counters;
+  float leaf_entry = 0.0f;
+
+  void on_node() { ++counters.node_visits; }
+  void on_leaf(float entry) {
+    ++counters.leaf_visits;
+    leaf_entry = entry;
+  }
+  void on_accept(float scaled_t) {
+    ++counters.accepted;
+    if (scaled_t < leaf_entry) ++counters.margin_violations;
+  }
+  void on_double_fallback() { ++counters.double_fallbacks; }
+};
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a traversal looks for: the closest hit, any hit, or the number of all hits. Each query says
+// what to do with a leaf; the traversal loop is the same for all.
+#pragma once
+
+#include "kernels/triangle-inl.h"
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+inline const GeometryRange& range_of(const SceneView& scene, uint32_t id) {
+  uint32_t low = 0, high = scene.range_count;
+  while (high - low > 1) {
+    const uint32_t middle = low + (high - low) / 2;
+    (scene.ranges[middle].first_id <= id ? low : high) = middle;
+  }
+  return scene.ranges[low];
+}
+
+/// Whether the ray may meet the triangle at all, by masks and by the side that it shows. A positive
+/// determinant is a triangle seen from its front.
+inline bool is_visible(const SceneView& scene, const ScalarRay& ray, uint32_t id,
+                       float determinant) {
+  if (ray.flags != 0) {
+    const uint32_t side =
+        __builtin_signbit(determinant) ? KIWAMI_RAY_CULL_BACK_FACES : KIWAMI_RAY_CULL_FRONT_FACES;
+    if (ray.flags & side) return false;
+  }
+  return scene.has_masks == 0 || (range_of(scene, id).mask & ray.mask) != 0;
+}
+
+/// The state that all queries share: the ray, and how far along it anything is of interest.
+template <int N>
+struct QueryBase {
+  const SceneView& scene;
+  const ScalarRay& scalar;
+  ShearRay<N> shear;
+  vfloat<N> nearest;  ///< scaled and widened: rejects triangles before their distance is known
+  vfloat<N> best;     ///< the same for the far end; the closest hit draws it nearer
+  float best_bound;   ///< best, as one float
+
+  QueryBase(const SceneView& scene_view, const ScalarRay& ray) : scene(scene_view), scalar(ray) {
+    set_up_shear(ray, shear);
+    nearest = broadcast<N>(scaled_lower(ray, ray.tmin));
+    set_best(ray.tmax);
+  }
+
+  void set_best(float t) {
+    best_bound = scaled_upper(scalar, t);
+    best = broadcast<N>(best_bound);
+  }
+
+  /// Calls accept(lane, t) for each visible triangle of the lanes that the ray meets between tmin
+  /// and tmax, until accept returns true; then returns true.
+  template <typename Probe, typename Accept>
+  bool for_each_hit(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe, Accept accept) {
+    ShearedBlock<N> sheared;
+    uint32_t inside = test_inside<N>(leaf, scalar, shear, nearest, best, lanes, sheared, probe);
+    if (inside == 0) return false;
+    float t[N], determinant[N];
+    compute_distances<N>(sheared, scalar, inside, t, determinant);
+    for (; inside; inside &= inside - 1) {
+      const int lane = __builtin_ctz(inside);
+      if (!(scalar.tmin <= t[lane] && t[lane] <= scalar.tmax)) continue;
+      if (!is_visible(scene, scalar, leaf.id[lane], determinant[lane])) continue;
+      probe.on_accept(static_cast<float>(static_cast<double>(t[lane]) * scalar.scale));
+      if (accept(lane, t[lane])) return true;
+    }
+    return false;
+  }
+};
+
+/// The least (t, id).
+template <int N>
+struct ClosestHitQuery : QueryBase<N> {
+  static constexpr bool kOrdered = true;
+  using Answer = kiwami_hit;
+
+  float best_t;
+  uint32_t best_id = KIWAMI_INVALID_ID;
+  const LeafBlock<N>* best_leaf = nullptr;
+  int best_lane = 0;
+
+  ClosestHitQuery(const SceneView& scene_view, const ScalarRay& ray)
+      : QueryBase<N>(scene_view, ray), best_t(ray.tmax) {}
+
+  template <typename Probe>
+  bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
+    bool is_nearer = false;
+    this->for_each_hit(leaf, lanes, probe, [&](int lane, float t) {
+      if (t < best_t || (t == best_t && leaf.id[lane] < best_id)) {
+        best_t = t;
+        best_id = leaf.id[lane];
+        best_leaf = &leaf;
+        best_lane = lane;
+        is_nearer = true;
+      }
+      return false;
+    });
+    if (is_nearer) this->set_best(best_t);
+    return false;
+  }
+
+  static kiwami_hit miss() {
+    kiwami_hit hit;
+    hit.t = __builtin_inff();
+    hit.u = hit.v = hit.normal_x = hit.normal_y = hit.normal_z = 0.0f;
+    hit.primitive_id = hit.geometry_id = hit.instance_id = KIWAMI_INVALID_ID;
+    return hit;
+  }
+
+  kiwami_hit answer() const {
+    if (!best_leaf) return miss();
+    kiwami_hit hit;
+    hit.t = best_t;
+    compute_barycentrics(*best_leaf, this->scalar, best_lane, hit.u, hit.v);
+    const auto corner = [&](int k, int axis) { return best_leaf->position[k][axis][best_lane]; };
+    const auto edge = [&](int k, int axis) { return corner(k, axis) - corner(0, axis); };
+    hit.normal_x = edge(1, 1) * edge(2, 2) - edge(1, 2) * edge(2, 1);
+    hit.normal_y = edge(1, 2) * edge(2, 0) - edge(1, 0) * edge(2, 2);
+    hit.normal_z = edge(1, 0) * edge(2, 1) - edge(1, 1) * edge(2, 0);
+    const GeometryRange& range = range_of(this->scene, best_id);
+    hit.primitive_id = best_id - range.first_id;
+    hit.geometry_id = range.geometry_id;
+    hit.instance_id = KIWAMI_INVALID_ID;
+    return hit;
+  }
+};
+
+/// Whether there is a hit: ends at the first.
+template <int N>
+struct AnyHitQuery : QueryBase<N> {
+  static constexpr bool kOrdered = false;
+  using Answer = uint8_t;
+
+  bool is_hit = false;
+
+  using QueryBase<N>::QueryBase;
+
+  template <typename Probe>
+  bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
+    is_hit = this->for_each_hit(leaf, lanes, probe, [](int, float) { return true; });
+    return is_hit;
+  }
+
+  static uint8_t miss() { return 0; }
+  uint8_t answer() const { return is_hit ? 1 : 0; }
+};
+
+/// How many triangles the ray meets between tmin and tmax.
+template <int N>
+struct AllHitsQuery : QueryBase<N> {
+  static constexpr bool kOrdered = false;
+  using Answer = uint32_t;
+
+  uint32_t count = 0;
+
+  using QueryBase<N>::QueryBase;
+
+  template <typename Probe>
+  bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
+    this->for_each_hit(leaf, lanes, probe, [&](int, float) {
+      ++count;
+      return false;
+    });
+    return false;
+  }
+
+  static uint32_t miss() { return 0; }
+  uint32_t answer() const { return count; }
+};
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami

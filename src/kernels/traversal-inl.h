@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// The traversal of a wide tree by one ray, depth first and near children first.
+#pragma once
+
+#include "kernels/node-inl.h"
+#include "kernels/probe-inl.h"
+#include "kernels/query-inl.h"
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+/// A subtree still to be visited.
+struct StackEntry {
+  uint32_t child;
+  uint32_t mask;
+  float entry;  ///< distance at which the ray enters its box
+  uint32_t reserved;
+};
+
+template <int N>
+struct Stack {
+  // A path of kMaxWideDepth nodes leaves at most N - 1 entries at each.
+  StackEntry entries[kMaxWideDepth * (N - 1) + 1];
+  StackEntry* top = entries;
+
+  bool is_empty() const { return top == entries; }
+  void push(StackEntry entry) { *top++ = entry; }
+  StackEntry pop() { return *--top; }
+};
+
+template <int N>
+inline StackEntry child_of(const WideNode<N>& node, int slot, float entry) {
+  return {node.child[slot], node.mask[slot], entry, 0};
+}
+
+/// Puts the nearest of the hit slots into next and the others onto the stack, farthest first.
+template <int N>
+inline void choose_nearest(const WideNode<N>& node, uint32_t hits, const float* entry,
+                           Stack<N>& stack, StackEntry& next) {
+  int slot = __builtin_ctz(hits);
+  hits &= hits - 1;
+  next = child_of(node, slot, entry[slot]);
+  if (hits == 0) return;
+  StackEntry* const bottom = stack.top;
+  for (; hits; hits &= hits - 1) {
+    slot = __builtin_ctz(hits);
+    StackEntry other = child_of(node, slot, entry[slot]);
+    if (other.entry < next.entry) {
+      const StackEntry nearer = other;
+      other = next;
+      next = nearer;
+    }
+    // Insertion sort: few children are hit at once.
+    StackEntry* place = stack.top++;
+    for (; place != bottom && place[-1].entry < other.entry; --place) *place = place[-1];
+    *place = other;
+  }
+}
+
+/// Puts the first of the hit slots into next and the others onto the stack, in their order.
+template <int N>
+inline void choose_first(const WideNode<N>& node, uint32_t hits, const float* entry,
+                         Stack<N>& stack, StackEntry& next) {
+  for (; hits & (hits - 1);) {
+    const int slot = 31 - __builtin_clz(hits);
+    stack.push(child_of(node, slot, entry[slot]));
+    hits ^= 1u << slot;
+  }
+  const int slot = __builtin_ctz(hits);
+  next = child_of(node, slot, entry[slot]);
+}
+
+template <int N, typename Query, typename Probe>
+inline void traverse(const TreeView& tree, const SlabRay<N>& ray, Query& query, Probe& probe) {
+  const auto* const nodes = static_cast<const WideNode<N>*>(tree.nodes);
+  const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
+  Stack<N> stack;
+  const float ray_begin = scaled_lower(query.scalar, query.scalar.tmin);
+  StackEntry current{tree.root, tree.root_mask, ray_begin, 0};
+  while (true) {
+    if (!(current.child & kLeafFlag)) {
+      probe.on_node();
+      const WideNode<N>& node = nodes[current.child];
+      vfloat<N> entry;
+      const uint32_t hits = test_boxes(node, ray, query.best, entry) & current.mask;
+      if (hits != 0) {
+        float entries[N];
+        store(entries, entry);
+        if constexpr (Query::kOrdered) {
+          choose_nearest(node, hits, entries, stack, current);
+        } else {
+          choose_first(node, hits, entries, stack, current);
+        }
+        continue;
+      }
+    } else {
+      probe.on_leaf(current.entry);
+      if (query.visit_leaf(leaves[current.child ^ kLeafFlag], current.mask, probe)) return;
+    }
+    do {
+      if (stack.is_empty()) return;
+      current = stack.pop();
+    } while (Query::kOrdered && current.entry > query.best_bound);
+  }
+}
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami

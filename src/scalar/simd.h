@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// The vocabulary of the kernels in portable C++: the oracle of the other instruction sets.
+//
+//   vfloat<N>      N floats: load, store, + - *, min, max, multiply_add, comparisons to bit masks
+//   vdouble4       4 doubles, read from and written to floats
+//
+// min and max return their second operand where a lane is NaN or the two are equal, as the SSE
+// instructions do. multiply_add may or may not be fused: only box tests, which have a margin for
+// it, use it.
+#pragma once
+
+#include <stdint.h>
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+template <int N>
+struct vfloat {
+  float lane[N];
+};
+
+template <int N, typename Operation>
+inline vfloat<N> lane_by_lane(Operation operation) {
+  vfloat<N> result;
+  for (int i = 0; i < N; ++i) result.lane[i] = operation(i);
+  return result;
+}
+
+template <int N, typename Predicate>
+inline uint32_t mask_of(Predicate predicate) {
+  uint32_t mask = 0;
+  for (int i = 0; i < N; ++i) mask |= static_cast<uint32_t>(predicate(i)) << i;
+  return mask;
+}
+
+template <int N>
+inline vfloat<N> load(const float* from) {
+  return lane_by_lane<N>([&](int i) { return from[i]; });
+}
+template <int N>
+inline vfloat<N> broadcast(float value) {
+  return lane_by_lane<N>([&](int) { return value; });
+}
+template <int N>
+inline void store(float* to, vfloat<N> a) {
+  for (int i = 0; i < N; ++i) to[i] = a.lane[i];
+}
+
+template <int N>
+inline vfloat<N> operator+(vfloat<N> a, vfloat<N> b) {
+  return lane_by_lane<N>([&](int i) { return a.lane[i] + b.lane[i]; });
+}
+template <int N>
+inline vfloat<N> operator-(vfloat<N> a, vfloat<N> b) {
+  return lane_by_lane<N>([&](int i) { return a.lane[i] - b.lane[i]; });
+}
+template <int N>
+inline vfloat<N> operator*(vfloat<N> a, vfloat<N> b) {
+  return lane_by_lane<N>([&](int i) { return a.lane[i] * b.lane[i]; });
+}
+template <int N>
+inline vfloat<N> multiply_add(vfloat<N> a, vfloat<N> b, vfloat<N> c) {
+  return a * b + c;
+}
+template <int N>
+inline vfloat<N> min(vfloat<N> a, vfloat<N> b) {
+  return lane_by_lane<N>([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
+}
+template <int N>
+inline vfloat<N> max(vfloat<N> a, vfloat<N> b) {
+  return lane_by_lane<N>([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
+}
+template <int N>
+inline uint32_t less_equal(vfloat<N> a, vfloat<N> b) {
+  return mask_of<N>([&](int i) { return a.lane[i] <= b.lane[i]; });
+}
+template <int N>
+inline uint32_t equal(vfloat<N> a, vfloat<N> b) {
+  return mask_of<N>([&](int i) { return a.lane[i] == b.lane[i]; });
+}
+
+struct vdouble4 {
+  double lane[4];
+};
+
+template <typename Operation>
+inline vdouble4 double_by_double(Operation operation) {
+  vdouble4 result;
+  for (int i = 0; i < 4; ++i) result.lane[i] = operation(i);
+  return result;
+}
+inline vdouble4 load_widened(const float* from) {
+  return double_by_double([&](int i) { return static_cast<double>(from[i]); });
+}
+inline vdouble4 broadcast_double(double value) {
+  return double_by_double([&](int) { return value; });
+}
+inline void store_rounded(float* to, vdouble4 a) {
+  for (int i = 0; i < 4; ++i) to[i] = static_cast<float>(a.lane[i]);
+}
+inline vdouble4 operator+(vdouble4 a, vdouble4 b) {
+  return double_by_double([&](int i) { return a.lane[i] + b.lane[i]; });
+}
+inline vdouble4 operator-(vdouble4 a, vdouble4 b) {
+  return double_by_double([&](int i) { return a.lane[i] - b.lane[i]; });
+}
+inline vdouble4 operator*(vdouble4 a, vdouble4 b) {
+  return double_by_double([&](int i) { return a.lane[i] * b.lane[i]; });
+}
+inline vdouble4 operator/(vdouble4 a, vdouble4 b) {
+  return double_by_double([&](int i) { return a.lane[i] / b.lane[i]; });
+}
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernels/kernels.h"
+
+extern "C" void KIWAMI_KERNEL_TABLE_GETTER(kiwami::KernelTable* table) {
+  using namespace kiwami;
+  *table = {KIWAMI_ISA_SSE, {KIWAMI_ISA::kernels_w4(), TraversalKernels{}, TraversalKernels{}}};
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The vocabulary of the kernels for SSE4.1: see src/scalar/simd.h.
+#pragma once
+
+#include "sse/vector128.h"
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+struct vdouble4 {
+  simde__m128d low, high;
+};
+
+inline vdouble4 load_widened(const float* from) {
+  const simde__m128 floats = simde_mm_loadu_ps(from);
+  return {simde_mm_cvtps_pd(floats), simde_mm_cvtps_pd(simde_mm_movehl_ps(floats, floats))};
+}
+inline vdouble4 broadcast_double(double value) {
+  const simde__m128d both = simde_mm_set1_pd(value);
+  return {both, both};
+}
+inline void store_rounded(float* to, vdouble4 a) {
+  const simde__m128 low = simde_mm_cvtpd_ps(a.low), high = simde_mm_cvtpd_ps(a.high);
+  simde_mm_storeu_ps(to, simde_mm_movelh_ps(low, high));
+}
+inline vdouble4 operator+(vdouble4 a, vdouble4 b) {
+  return {simde_mm_add_pd(a.low, b.low), simde_mm_add_pd(a.high, b.high)};
+}
+inline vdouble4 operator-(vdouble4 a, vdouble4 b) {
+  return {simde_mm_sub_pd(a.low, b.low), simde_mm_sub_pd(a.high, b.high)};
+}
+inline vdouble4 operator*(vdouble4 a, vdouble4 b) {
+  return {simde_mm_mul_pd(a.low, b.low), simde_mm_mul_pd(a.high, b.high)};
+}
+inline vdouble4 operator/(vdouble4 a, vdouble4 b) {
+  return {simde_mm_div_pd(a.low, b.low), simde_mm_div_pd(a.high, b.high)};
+}
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami

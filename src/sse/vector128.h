@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// vfloat<4> on 128-bit registers, for every x86 instruction set and, through SIMDe, for NEON.
+// The vocabulary is described in src/scalar/simd.h.
+#pragma once
+
+#include <simde/x86/fma.h>
+#include <simde/x86/sse4.1.h>
+#include <stdint.h>
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+template <int N>
+struct vfloat;
+
+template <>
+struct vfloat<4> {
+  simde__m128 value;
+};
+
+template <int N>
+inline vfloat<N> load(const float* from);
+template <int N>
+inline vfloat<N> broadcast(float value);
+
+template <>
+inline vfloat<4> load<4>(const float* from) {
+  return {simde_mm_loadu_ps(from)};
+}
+template <>
+inline vfloat<4> broadcast<4>(float value) {
+  return {simde_mm_set1_ps(value)};
+}
+inline void store(float* to, vfloat<4> a) { simde_mm_storeu_ps(to, a.value); }
+
+inline vfloat<4> operator+(vfloat<4> a, vfloat<4> b) { return {simde_mm_add_ps(a.value, b.value)}; }
+inline vfloat<4> operator-(vfloat<4> a, vfloat<4> b) { return {simde_mm_sub_ps(a.value, b.value)}; }
+inline vfloat<4> operator*(vfloat<4> a, vfloat<4> b) { return {simde_mm_mul_ps(a.value, b.value)}; }
+inline vfloat<4> multiply_add(vfloat<4> a, vfloat<4> b, vfloat<4> c) {
+  return {simde_mm_fmadd_ps(a.value, b.value, c.value)};
+}
+inline vfloat<4> min(vfloat<4> a, vfloat<4> b) { return {simde_mm_min_ps(a.value, b.value)}; }
+inline vfloat<4> max(vfloat<4> a, vfloat<4> b) { return {simde_mm_max_ps(a.value, b.value)}; }
+inline uint32_t less_equal(vfloat<4> a, vfloat<4> b) {
+  return static_cast<uint32_t>(simde_mm_movemask_ps(simde_mm_cmple_ps(a.value, b.value)));
+}
+inline uint32_t equal(vfloat<4> a, vfloat<4> b) {
+  return static_cast<uint32_t>(simde_mm_movemask_ps(simde_mm_cmpeq_ps(a.value, b.value)));
+}
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami
