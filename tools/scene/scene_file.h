@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "scene/vector.h"
+
+namespace kiwami::tools {
+
+/// Why a scene cannot be had: one sentence without a full stop, naming the file and the reason.
+class SceneError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Triangles over shared vertices: three floats a vertex, three indices a triangle.
+struct Mesh {
+  std::string name;
+  std::vector<float> vertices;
+  std::vector<uint32_t> indices;
+
+  uint64_t vertex_count() const { return vertices.size() / 3; }
+  uint64_t triangle_count() const { return indices.size() / 3; }
+};
+
+/// A mesh put into the world by a 3x4 row-major object-to-world transform.
+struct Instance {
+  uint32_t mesh;
+  std::array<float, 12> transform;
+};
+
+/// A camera that shows a scene well.
+struct View {
+  Vec3 eye;
+  Vec3 target;
+  Vec3 up;
+  float vertical_field_of_view;  ///< in degrees
+};
+
+/// What a scene file holds. Without instances, each mesh stands in the world once, as it is.
+struct SceneFile {
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::optional<View> view;  ///< only procedural scenes suggest one
+
+  /// Triangles in the world: those of a mesh count once for each of its instances.
+  uint64_t triangle_count() const;
+};
+
+/// Reads an .obj, .tri or .ins file, each also with .gz, or makes a procedural scene by its name
+/// (see procedural.h). Indices are checked; vertices may be NaN. Throws SceneError.
+SceneFile load_scene(const std::filesystem::path& path);
+
+/// The same world without instances: mesh i of the result is instance i with its vertices moved.
+/// Throws SceneError when it has more triangles than the library takes.
+SceneFile flatten(const SceneFile& scene);
+
+}  // namespace kiwami::tools
