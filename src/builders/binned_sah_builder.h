@@ -14,7 +14,7 @@ namespace kiwami {
 class BinnedSahBuilder {
  public:
   struct Config {
-    /// Bins per axis.
+    /// Bins per axis, 2 to 32; nodes of few primitives use fewer (see bins_of).
     uint32_t bin_count = 16;
     /// No leaf owns more primitives.
     uint32_t max_leaf_size = 8;
@@ -24,7 +24,14 @@ class BinnedSahBuilder {
     float node_cost = 1.0f;
     /// Cost of testing one block.
     float leaf_cost = 1.0f;
+    /// Subtrees of at most this many primitives are built by one thread; 0: chosen by the number
+    /// of primitives. The shape of the tree does not depend on it.
+    uint32_t subtree_size = 0;
   };
+
+  /// The bins per axis that a node of so many primitives uses: more than its primitives would only
+  /// be cleared and scanned in vain.
+  static uint32_t bins_of(uint32_t primitive_count, const Config& config);
 
   /// Reorders the primitives and leaves their order in the tree's primitive_ids.
   static BinaryBvh build(Array<BuildPrimitive>& primitives, const Config& config, Memory& memory,

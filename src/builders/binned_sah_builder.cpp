@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builders/binned_sah_builder.h"
+
+#include <algorithm>
+
+#include "builders/sah_split.h"
+
+namespace kiwami {
+namespace {
+
+using Config = BinnedSahBuilder::Config;
+
+/// A node whose primitives are known and whose split is not.
+struct OpenNode {
+  RangeBounds bounds;
+  uint32_t begin, end;
+  uint32_t depth;  ///< nodes on the path from the root, this one included
+  uint32_t node;   ///< its place among the nodes near the root
+
+  uint32_t count() const { return end - begin; }
+};
+
+/// The two buffers between which stable partitions go back and forth.
+struct PrimitiveBuffers {
+  BuildPrimitive* buffer[2];
+};
+
+/// One thread's part: the whole tree below one node, in nodes numbered from 0.
+class SubtreeBuilder {
+ public:
+  SubtreeBuilder(const Config& config, const PrimitiveBuffers& buffers, uint32_t* primitive_ids,
+                 BinaryNode* nodes)
+      : config_(config), buffers_(buffers), primitive_ids_(primitive_ids), nodes_(nodes) {}
+
+  /// Builds the node itself into top, all below it into nodes; returns their number.
+  uint32_t build(const OpenNode& open, int side, BinaryNode& top) {
+    grow(open.bounds, open.begin, open.end, open.depth, side, top);
+    return node_count_;
+  }
+
+ private:
+  void grow(const RangeBounds& bounds, uint32_t begin, uint32_t end, uint32_t depth, int side,
+            BinaryNode& node) {
+    const SplitDecision decision = decide(bounds, begin, end, depth, side);
+    node.bounds = bounds.geometry.bounds();
+    if (decision.kind == SplitDecision::kLeaf) {
+      make_leaf(begin, end, side, node);
+      return;
+    }
+    RangeBounds child[2];
+    partition(decision, begin, end, side, child);
+    const uint32_t first = node_count_;
+    node_count_ += 2;
+    node.first = first;
+    node.count = 0;
+    const uint32_t middle = begin + decision.left_count;
+    grow(child[0], begin, middle, depth + 1, 1 - side, nodes_[first]);
+    grow(child[1], middle, end, depth + 1, 1 - side, nodes_[first + 1]);
+  }
+
+  SplitDecision decide(const RangeBounds& bounds, uint32_t begin, uint32_t end, uint32_t depth,
+                       int side) {
+    const uint32_t count = end - begin;
+    SplitDecision decision;
+    if (decide_without_bins(count, depth, config_, decision)) return decision;
+    mapping_ = BinMapping(bounds.centroids, BinnedSahBuilder::bins_of(count, config_));
+    bins_.clear(mapping_.bin_count);
+    bins_.add(buffers_.buffer[side] + begin, buffers_.buffer[side] + end, mapping_);
+    return decide_by_bins(bins_, mapping_, bounds, count, config_);
+  }
+
+  void partition(const SplitDecision& decision, uint32_t begin, uint32_t end, int side,
+                 RangeBounds child[2]) {
+    const BuildPrimitive* from = buffers_.buffer[side];
+    BuildPrimitive* to = buffers_.buffer[1 - side];
+    child[0] = child[1] = RangeBounds::empty();
+    uint32_t cursor[2] = {begin, begin + decision.left_count};
+    if (decision.kind == SplitDecision::kIndex) {
+      for (uint32_t i = begin; i < end; ++i) {
+        child[i >= cursor[1]].extend(from[i]);
+        to[i] = from[i];
+      }
+      return;
+    }
+    const SplitPlane plane(mapping_, decision.axis, decision.last_left_bin);
+    for (uint32_t i = begin; i < end; ++i) {
+      const uint32_t is_right = plane.is_right(from[i]);
+      child[is_right].extend(from[i]);
+      to[cursor[is_right]++] = from[i];
+    }
+  }
+
+  void make_leaf(uint32_t begin, uint32_t end, int side, BinaryNode& node) {
+    const BuildPrimitive* from = buffers_.buffer[side];
+    node.first = begin;
+    node.count = end - begin;
+    for (uint32_t i = begin; i < end; ++i) {
+      primitive_ids_[i] = from[i].id;
+      if (side != 0) buffers_.buffer[0][i] = from[i];
+    }
+  }
+
+  const Config& config_;
+  PrimitiveBuffers buffers_;
+  uint32_t* primitive_ids_;
+  BinaryNode* nodes_;
+  uint32_t node_count_ = 0;
+  BinMapping mapping_;
+  SahBins bins_;
+};
+
+/// A run of one open node's primitives: the unit of work near the root.
+struct Block {
+  uint32_t open_node;
+  uint32_t begin, end;
+  uint32_t cursor[2];  ///< where its primitives go, left and right
+  RangeBounds child[2];
+};
+
+/// An open node of the current level, and what is being found out about it.
+struct LevelNode {
+  OpenNode open;
+  BinMapping mapping;
+  SplitDecision decision;
+  uint32_t first_block, block_end;
+};
+
+/// A subtree that one thread builds.
+struct Subtree {
+  OpenNode open;
+  int side;
+  uint32_t node_count;
+  uint32_t first_node;
+};
+
+/// One build. The nodes near the root are split level by level, each step parallel over the blocks
+/// of all nodes of the level; then the subtrees below them, each by one thread.
+class Build {
+ public:
+  Build(Array<BuildPrimitive>& primitives, const Config& config, Memory& memory,
+        const Parallel& parallel)
+      : primitives_(primitives),
+        config_(config),
+        memory_(memory),
+        parallel_(parallel),
+        count_(static_cast<uint32_t>(primitives.size())),
+        // Enough blocks and subtrees to keep many threads busy, of a size worth starting a task.
+        block_size_(std::max(4096u, count_ / 1024)),
+        subtree_size_(config.subtree_size ? config.subtree_size : std::max(4096u, count_ / 256)),
+        scratch_(memory, primitives.size()),
+        top_nodes_(memory),
+        subtrees_(memory) {
+    subtree_size_ = std::max(subtree_size_, config.max_leaf_size);
+    buffers_ = {{primitives.data(), scratch_.data()}};
+  }
+
+  BinaryBvh run() {
+    BinaryBvh bvh;
+    bvh.primitive_ids = Array<uint32_t>(memory_, count_);
+    const OpenNode root = {bounds_of_all(), 0, count_, 1, 0};
+    top_nodes_.push_back(BinaryNode{});
+    GrowingArray<LevelNode> level(memory_);
+    add_open_node(root, 0, level);
+    for (int side = 0; !level.empty(); side = 1 - side) level = split_level(level, side);
+    // A subtree of n primitives has at most 2n - 2 nodes below its root.
+    Array<BinaryNode> subtree_nodes(memory_, size_t{2} * count_);
+    build_subtrees(subtree_nodes, bvh.primitive_ids.data());
+    bvh.nodes = join_nodes(subtree_nodes);
+    return bvh;
+  }
+
+ private:
+  RangeBounds bounds_of_all() {
+    const size_t blocks = (count_ + block_size_ - 1) / block_size_;
+    Array<RangeBounds> partial(memory_, blocks);
+    parallel_.for_each(blocks, [&](size_t block) {
+      const size_t begin = block * block_size_;
+      const size_t end = std::min<size_t>(begin + block_size_, count_);
+      RangeBounds bounds = RangeBounds::empty();
+      for (size_t i = begin; i < end; ++i) bounds.extend(primitives_[i]);
+      partial[block] = bounds;
+    });
+    RangeBounds all = RangeBounds::empty();
+    for (const RangeBounds& bounds : partial) all.extend(bounds);
+    return all;
+  }
+
+  /// Files a node whose primitives stand in buffer side: as a subtree, or to be split next.
+  void add_open_node(const OpenNode& open, int side, GrowingArray<LevelNode>& level) {
+    if (open.count() <= subtree_size_) {
+      subtrees_.push_back({open, side, 0, 0});
+    } else {
+      level.push_back({open, BinMapping(), SplitDecision(), 0, 0});
+    }
+  }
+
+  GrowingArray<LevelNode> split_level(GrowingArray<LevelNode>& level, int side) {
+    Array<Block> blocks = cut_into_blocks(level);
+    const BuildPrimitive* from = buffers_.buffer[side];
+    decide_level(level, blocks, from);
+    parallel_.for_each(blocks.size(), [&](size_t i) {
+      Block& block = blocks[i];
+      scatter(level[block.open_node], block, from, buffers_.buffer[1 - side]);
+    });
+    GrowingArray<LevelNode> next(memory_);
+    for (size_t i = 0; i < level.size(); ++i) add_children(level[i], blocks, 1 - side, next);
+    return next;
+  }
+
+  Array<Block> cut_into_blocks(GrowingArray<LevelNode>& level) {
+    GrowingArray<Block> blocks(memory_);
+    for (size_t i = 0; i < level.size(); ++i) {
+      const OpenNode& open = level[i].open;
+      level[i].first_block = static_cast<uint32_t>(blocks.size());
+      for (uint32_t begin = open.begin; begin < open.end;) {
+        const uint32_t end = begin + std::min(block_size_, open.end - begin);
+        blocks.push_back({static_cast<uint32_t>(i), begin, end, {0, 0}, {}});
+        begin = end;
+      }
+      level[i].block_end = static_cast<uint32_t>(blocks.size());
+    }
+    return blocks.take();
+  }
+
+  /// Decides each node's split, and where in the other buffer each block's primitives go.
+  void decide_level(GrowingArray<LevelNode>& level, Array<Block>& blocks,
+                    const BuildPrimitive* from) {
+    parallel_.for_each(level.size(), [&](size_t i) {
+      LevelNode& node = level[i];
+      const uint32_t bins = BinnedSahBuilder::bins_of(node.open.count(), config_);
+      node.mapping = BinMapping(node.open.bounds.centroids, bins);
+    });
+    Array<SahBins> block_bins(memory_, blocks.size());
+    parallel_.for_each(blocks.size(), [&](size_t i) {
+      const BinMapping& mapping = level[blocks[i].open_node].mapping;
+      block_bins[i].clear(mapping.bin_count);
+      block_bins[i].add(from + blocks[i].begin, from + blocks[i].end, mapping);
+    });
+    parallel_.for_each(level.size(), [&](size_t i) {
+      LevelNode& node = level[i];
+      const OpenNode& open = node.open;
+      if (!decide_without_bins(open.count(), open.depth, config_, node.decision)) {
+        SahBins bins = block_bins[node.first_block];
+        for (uint32_t block = node.first_block + 1; block < node.block_end; ++block) {
+          bins.merge(block_bins[block], node.mapping.bin_count);
+        }
+        node.decision = decide_by_bins(bins, node.mapping, open.bounds, open.count(), config_);
+      }
+      place_blocks(node, blocks, block_bins);
+    });
+  }
+
+  /// The scan that makes the parallel partition stable.
+  static void place_blocks(const LevelNode& node, Array<Block>& blocks,
+                           const Array<SahBins>& block_bins) {
+    const SplitDecision& decision = node.decision;
+    const uint32_t middle = node.open.begin + decision.left_count;
+    uint32_t left = node.open.begin, right = middle;
+    for (uint32_t i = node.first_block; i < node.block_end; ++i) {
+      Block& block = blocks[i];
+      const uint32_t size = block.end - block.begin;
+      const uint32_t left_size =
+          decision.kind == SplitDecision::kPlane
+              ? block_bins[i].count_left(decision.axis, decision.last_left_bin)
+              : std::clamp(middle, block.begin, block.end) - block.begin;
+      block.cursor[0] = left;
+      block.cursor[1] = right;
+      left += left_size;
+      right += size - left_size;
+    }
+  }
+
+  static void scatter(const LevelNode& node, Block& block, const BuildPrimitive* from,
+                      BuildPrimitive* to) {
+    RangeBounds child[2] = {RangeBounds::empty(), RangeBounds::empty()};
+    uint32_t cursor[2] = {block.cursor[0], block.cursor[1]};
+    const SplitDecision& decision = node.decision;
+    const bool by_plane = decision.kind == SplitDecision::kPlane;
+    const SplitPlane plane(node.mapping, decision.axis, decision.last_left_bin);
+    const uint32_t middle = node.open.begin + decision.left_count;
+    for (uint32_t i = block.begin; i < block.end; ++i) {
+      const uint32_t is_right = by_plane ? plane.is_right(from[i]) : i >= middle;
+      child[is_right].extend(from[i]);
+      to[cursor[is_right]++] = from[i];
+    }
+    block.child[0] = child[0];
+    block.child[1] = child[1];
+  }
+
+  void add_children(const LevelNode& parent, const Array<Block>& blocks, int side,
+                    GrowingArray<LevelNode>& next) {
+    const OpenNode& open = parent.open;
+    const uint32_t first = static_cast<uint32_t>(top_nodes_.size());
+    top_nodes_[open.node] = {open.bounds.geometry.bounds(), first, 0};
+    const uint32_t edges[3] = {open.begin, open.begin + parent.decision.left_count, open.end};
+    for (uint32_t child = 0; child < 2; ++child) {
+      RangeBounds bounds = RangeBounds::empty();
+      for (uint32_t i = parent.first_block; i < parent.block_end; ++i) {
+        bounds.extend(blocks[i].child[child]);
+      }
+      top_nodes_.push_back(BinaryNode{});
+      add_open_node({bounds, edges[child], edges[child + 1], open.depth + 1, first + child}, side,
+                    next);
+    }
+  }
+
+  void build_subtrees(Array<BinaryNode>& nodes, uint32_t* primitive_ids) {
+    // In the order of primitives, so that neighbouring subtrees are neighbours in memory.
+    subtree_list_ = subtrees_.take();
+    std::sort(subtree_list_.begin(), subtree_list_.end(),
+              [](const Subtree& a, const Subtree& b) { return a.open.begin < b.open.begin; });
+    Array<uint32_t> order(memory_, subtree_list_.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<uint32_t>(i);
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+      return subtree_list_[a].open.count() > subtree_list_[b].open.count();
+    });
+    parallel_.for_each(order.size(), [&](size_t i) {
+      Subtree& subtree = subtree_list_[order[i]];
+      const OpenNode& open = subtree.open;
+      SubtreeBuilder builder(config_, buffers_, primitive_ids,
+                             nodes.data() + size_t{2} * open.begin);
+      subtree.node_count = builder.build(open, subtree.side, top_nodes_[open.node]);
+    });
+  }
+
+  /// All nodes in one array without gaps: those near the root, then subtree by subtree.
+  Array<BinaryNode> join_nodes(const Array<BinaryNode>& subtree_nodes) {
+    uint32_t total = static_cast<uint32_t>(top_nodes_.size());
+    for (Subtree& subtree : subtree_list_) {
+      subtree.first_node = total;
+      total += subtree.node_count;
+    }
+    Array<BinaryNode> nodes(memory_, total);
+    for (size_t i = 0; i < top_nodes_.size(); ++i) nodes[i] = top_nodes_[i];
+    parallel_.for_each(subtree_list_.size(), [&](size_t i) {
+      const Subtree& subtree = subtree_list_[i];
+      BinaryNode& root = nodes[subtree.open.node];
+      if (!root.is_leaf()) root.first += subtree.first_node;
+      const BinaryNode* from = subtree_nodes.data() + size_t{2} * subtree.open.begin;
+      for (uint32_t k = 0; k < subtree.node_count; ++k) {
+        BinaryNode node = from[k];
+        if (!node.is_leaf()) node.first += subtree.first_node;
+        nodes[subtree.first_node + k] = node;
+      }
+    });
+    return nodes;
+  }
+
+  Array<BuildPrimitive>& primitives_;
+  const Config& config_;
+  Memory& memory_;
+  const Parallel& parallel_;
+  uint32_t count_;
+  uint32_t block_size_;
+  uint32_t subtree_size_;
+  Array<BuildPrimitive> scratch_;
+  PrimitiveBuffers buffers_{};
+  GrowingArray<BinaryNode> top_nodes_;
+  GrowingArray<Subtree> subtrees_;
+  Array<Subtree> subtree_list_;
+};
+
+}  // namespace
+
+uint32_t BinnedSahBuilder::bins_of(uint32_t primitive_count, const Config& config) {
+  const uint32_t most = std::clamp(config.bin_count, 2u, SahBins::kMaxBins);
+  return std::min(most, 4 + primitive_count / 4);
+}
+
+BinaryBvh BinnedSahBuilder::build(Array<BuildPrimitive>& primitives, const Config& config,
+                                  Memory& memory, const Parallel& parallel) {
+  if (primitives.empty()) return {Array<BinaryNode>(memory, 0), Array<uint32_t>(memory, 0)};
+  return Build(primitives, config, memory, parallel).run();
+}
+
+}  // namespace kiwami
