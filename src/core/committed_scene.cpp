@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/committed_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+
+#include "builders/binned_sah_builder.h"
+#include "bvh/verify_binary.h"
+#include "core/build_primitives.h"
+#include "core/error.h"
+#include "dispatch/dispatch.h"
+
+namespace kiwami {
+
+namespace {
+
+/// Running ids are 32 bits wide, and their highest value names nothing.
+constexpr uint64_t kMaxTriangleCount = 0xFFFFFFFEu;
+
+uint32_t width_of(const SceneParameters& parameters, const Device& device) {
+  const uint32_t width = parameters.whole(KIWAMI_PARAMETER_BVH_WIDTH);
+  return width != 0 ? width : default_width_of(device.isa());
+}
+
+BinnedSahBuilder::Config builder_config(const SceneParameters& parameters, uint32_t width) {
+  BinnedSahBuilder::Config config;
+  const uint32_t leaf_size = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
+  config.bin_count = parameters.whole(KIWAMI_PARAMETER_BIN_COUNT);
+  config.max_leaf_size = leaf_size != 0 ? std::min(leaf_size, width) : width;
+  config.block_size = width;
+  config.node_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_NODE_COST]);
+  config.leaf_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_LEAF_COST]);
+  return config;
+}
+
+WideTreeConfig wide_config(const SceneParameters& parameters, uint32_t width) {
+  WideTreeConfig config;
+  config.width = width;
+  config.merge_leaves = parameters.whole(KIWAMI_PARAMETER_MERGE_LEAVES) != 0;
+  config.merge_ring = parameters.whole(KIWAMI_PARAMETER_MERGE_RING);
+  config.node_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_NODE_COST]);
+  config.leaf_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_LEAF_COST]);
+  return config;
+}
+
+double ratio(uint64_t part, uint64_t whole) {
+  return whole != 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
+}  // namespace
+
+CommittedScene::MeshReferences::MeshReferences(Memory& memory, const AttachedMesh* meshes,
+                                               size_t count)
+    : meshes_(memory, count) {
+  for (size_t i = 0; i < count; ++i) {
+    meshes_[i] = meshes[i].mesh;
+    meshes_[i]->retain();
+  }
+  std::sort(meshes_.begin(), meshes_.end(), std::less<TriangleMesh*>());
+}
+
+CommittedScene::MeshReferences::~MeshReferences() {
+  for (TriangleMesh* mesh : meshes_) mesh->release();
+}
+
+size_t CommittedScene::MeshReferences::copied_bytes() const {
+  size_t bytes = 0;
+  const TriangleMesh* previous = nullptr;
+  for (const TriangleMesh* mesh : meshes_) {
+    if (mesh != previous) bytes += mesh->copied_bytes();
+    previous = mesh;
+  }
+  return bytes;
+}
+
+CommittedScene::CommittedScene(Device& device, const AttachedMesh* meshes, size_t count,
+                               const SceneParameters& parameters)
+    : memory_(device.memory().allocator()),
+      parallel_(&device.parallel()),
+      validates_arguments_(device.validates_arguments()),
+      references_(memory_, meshes, count) {
+  const auto start = std::chrono::steady_clock::now();
+  number_triangles(meshes, count);
+  const uint32_t width = width_of(parameters, device);
+  kernels_ = kernels_of(device.isa(), width);
+  tree_.width = width;
+  build(parameters);
+  describe();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  info_.build_seconds = seconds.count();
+}
+
+/// Running ids rise by geometry and then by primitive: their order is the order of equal hits.
+void CommittedScene::number_triangles(const AttachedMesh* meshes, size_t count) {
+  mesh_views_ = Array<TriangleMeshView>(memory_, count);
+  ranges_ = Array<GeometryRange>(memory_, count);
+  uint64_t next_id = 0;
+  size_t used = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const TriangleMesh& mesh = *meshes[i].mesh;
+    if (mesh.triangle_count() == 0) continue;
+    const uint32_t first_id = static_cast<uint32_t>(next_id);
+    next_id += mesh.triangle_count();
+    if (next_id > kMaxTriangleCount) {
+      throw Error(KIWAMI_ERROR_TOO_LARGE,
+                  "the scene has %llu triangles up to geometry %u, expected at most %llu",
+                  static_cast<unsigned long long>(next_id), meshes[i].geometry_id,
+                  static_cast<unsigned long long>(kMaxTriangleCount));
+    }
+    mesh_views_[used] = mesh.view(first_id, meshes[i].geometry_id);
+    ranges_[used] = {first_id, meshes[i].geometry_id, mesh.mask()};
+    if (mesh.mask() != ~uint32_t{0}) view_.has_masks = 1;
+    ++used;
+  }
+  mesh_views_.shrink(used);
+  ranges_.shrink(used);
+  numbered_count_ = static_cast<size_t>(next_id);
+}
+
+BinaryBvh CommittedScene::build_binary(const SceneParameters& parameters) {
+  Array<BuildPrimitive> primitives =
+      collect_build_primitives(source(), numbered_count_, memory_, *parallel_);
+  triangle_count_ = primitives.size();
+  const BinnedSahBuilder::Config config = builder_config(parameters, tree_.width);
+  BinaryBvh binary = BinnedSahBuilder::build(primitives, config, memory_, *parallel_);
+  if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
+    verify_binary_bvh(binary, primitives.data(), primitives.size(), config.max_leaf_size, memory_);
+  }
+  return binary;
+}
+
+void CommittedScene::build(const SceneParameters& parameters) {
+  const BinaryBvh binary = build_binary(parameters);
+  tree_ =
+      build_wide_tree(binary, source(), wide_config(parameters, tree_.width), memory_, *parallel_);
+  if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
+
+  view_.tree = tree_.view;
+  view_.ranges = ranges_.data();
+  view_.range_count = static_cast<uint32_t>(ranges_.size());
+  const Bounds bounds = binary.nodes.empty() ? Bounds::empty() : binary.nodes[0].bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    info_.bounds_min[axis] = bounds.lower[axis];
+    info_.bounds_max[axis] = bounds.upper[axis];
+  }
+}
+
+void CommittedScene::describe() {
+  info_.struct_size = sizeof(info_);
+  info_.bvh_width = tree_.width;
+  info_.leaf_width = tree_.leaf_width;
+  info_.bvh_depth = tree_.depth;
+  info_.triangle_count = triangle_count_;
+  info_.skipped_count = numbered_count_ - triangle_count_;
+  info_.node_count = tree_.node_count;
+  info_.leaf_block_count = tree_.leaf_block_count;
+  info_.node_bytes = tree_.nodes.bytes();
+  info_.leaf_bytes = tree_.leaves.bytes();
+  info_.total_bytes = memory_.bytes_in_use() + references_.copied_bytes() + sizeof(*this);
+  info_.peak_build_bytes = memory_.peak_bytes() + references_.copied_bytes() + sizeof(*this);
+  info_.node_fill = ratio(tree_.used_slots, tree_.node_count * tree_.width);
+  info_.leaf_fill = ratio(tree_.used_lanes, tree_.leaf_block_count * tree_.leaf_width);
+  info_.sah_cost = tree_.sah_cost;
+}
+
+void CommittedScene::validate() const {
+  verify_wide_tree(tree_, source(), triangle_count_, memory_);
+}
+
+}  // namespace kiwami

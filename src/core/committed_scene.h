@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bvh/triangle_source.h"
+#include "core/device.h"
+#include "core/geometry.h"
+#include "core/memory.h"
+#include "core/scene_parameters.h"
+#include "kernels/kernel_table.h"
+#include "wide/wide_tree.h"
+
+namespace kiwami {
+
+/// A geometry with its number in a scene.
+struct AttachedMesh {
+  TriangleMesh* mesh;
+  uint32_t geometry_id;
+};
+
+/// What a commit makes and the kernels read: the tree and the tables around it. Holds the
+/// geometries that it was built from, so that it outlives their detachment. Never changes.
+class CommittedScene {
+ public:
+  /// Builds over count meshes by rising geometry_id. Throws Error.
+  CommittedScene(Device& device, const AttachedMesh* meshes, size_t count,
+                 const SceneParameters& parameters);
+  CommittedScene(const CommittedScene&) = delete;
+  CommittedScene& operator=(const CommittedScene&) = delete;
+
+  const SceneView& view() const { return view_; }
+  const TraversalKernels& kernels() const { return kernels_; }
+  const Parallel& parallel() const { return *parallel_; }
+  bool validates_arguments() const { return validates_arguments_; }
+  const kiwami_scene_info& info() const { return info_; }
+
+  /// Checks every invariant; throws Error(VALIDATION) or Error(OUT_OF_MEMORY).
+  void validate() const;
+
+ private:
+  /// Counted references to the meshes.
+  class MeshReferences {
+   public:
+    MeshReferences(Memory& memory, const AttachedMesh* meshes, size_t count);
+    ~MeshReferences();
+    MeshReferences(const MeshReferences&) = delete;
+    MeshReferences& operator=(const MeshReferences&) = delete;
+
+    /// The bytes of their copied buffers, each mesh counted once however often it is attached.
+    size_t copied_bytes() const;
+
+   private:
+    Array<TriangleMesh*> meshes_;  ///< sorted by address
+  };
+
+  void number_triangles(const AttachedMesh* meshes, size_t count);
+  BinaryBvh build_binary(const SceneParameters& parameters);
+  void build(const SceneParameters& parameters);
+  void describe();
+  TriangleSource source() const {
+    return {mesh_views_.data(), static_cast<uint32_t>(mesh_views_.size())};
+  }
+
+  // Its own byte count, which gives the exact peak of one build, whatever else the device does.
+  mutable Memory memory_;
+  const Parallel* parallel_;
+  bool validates_arguments_;
+  TraversalKernels kernels_{};
+  MeshReferences references_;
+  Array<TriangleMeshView> mesh_views_;
+  Array<GeometryRange> ranges_;
+  WideTree tree_;
+  SceneView view_{};
+  size_t numbered_count_ = 0;  ///< triangles of all meshes, skipped ones included
+  size_t triangle_count_ = 0;
+  kiwami_scene_info info_{};
+};
+
+}  // namespace kiwami

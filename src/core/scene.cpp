@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/error.h"
+
+namespace kiwami {
+
+namespace {
+
+void log_skipped(const Device& device, const kiwami_scene_info& info) {
+  if (info.skipped_count == 0) return;
+  char sentence[Error::kCapacity];
+  std::snprintf(
+      sentence, sizeof(sentence),
+      "commit skipped %llu of %llu triangles for a vertex that is NaN, infinite or beyond "
+      "KIWAMI_MAX_COORDINATE",
+      static_cast<unsigned long long>(info.skipped_count),
+      static_cast<unsigned long long>(info.skipped_count + info.triangle_count));
+  device.log(KIWAMI_OK, sentence);
+}
+
+}  // namespace
+
+Scene* Scene::create(Device& device) { return make_object<Scene>(device.memory(), device); }
+
+void Scene::destroy(Scene* scene) noexcept {
+  const Reference<Device> device = scene->device_;
+  destroy_object(device->memory(), scene);
+}
+
+Scene::~Scene() {
+  for (size_t id = 0; id < meshes_.size(); ++id) {
+    if (meshes_[id]) meshes_[id]->release();
+  }
+}
+
+uint32_t Scene::attach(TriangleMesh& mesh) {
+  while (lowest_free_ < meshes_.size() && meshes_[lowest_free_]) ++lowest_free_;
+  if (lowest_free_ == meshes_.size()) meshes_.push_back(nullptr);
+  meshes_[lowest_free_] = &mesh;
+  mesh.retain();
+  return lowest_free_++;
+}
+
+void Scene::detach(uint32_t geometry_id) {
+  if (geometry_id >= meshes_.size() || !meshes_[geometry_id]) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "geometry_id is %u, expected the number of an attached geometry", geometry_id);
+  }
+  meshes_[geometry_id]->release();
+  meshes_[geometry_id] = nullptr;
+  lowest_free_ = std::min(lowest_free_, geometry_id);
+}
+
+Array<AttachedMesh> Scene::attached_meshes() const {
+  Array<AttachedMesh> attached(device_->memory(), meshes_.size());
+  size_t count = 0;
+  for (size_t id = 0; id < meshes_.size(); ++id) {
+    if (meshes_[id]) attached[count++] = {meshes_[id], static_cast<uint32_t>(id)};
+  }
+  attached.shrink(count);
+  return attached;
+}
+
+void Scene::commit() {
+  Memory& memory = device_->memory();
+  const Array<AttachedMesh> attached = attached_meshes();
+  committed_ = Owned<CommittedScene>(
+      memory,
+      make_object<CommittedScene>(memory, *device_, attached.data(), attached.size(), parameters_));
+  log_skipped(*device_, committed_.get()->info());
+}
+
+}  // namespace kiwami

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/committed_scene.h"
+#include "core/device.h"
+#include "core/geometry.h"
+#include "core/object.h"
+#include "core/scene_parameters.h"
+
+namespace kiwami {
+
+/// Geometries and parameters that may change, and the structure that the last commit made of them.
+class Scene : public Object<Scene> {
+ public:
+  static Scene* create(Device& device);
+  static void destroy(Scene* scene) noexcept;
+
+  explicit Scene(Device& device) : device_(device), meshes_(device.memory()) {}
+  ~Scene();
+
+  Device& device() const { return *device_; }
+  SceneParameters& parameters() { return parameters_; }
+
+  /// Returns the lowest free number. Throws Error(OUT_OF_MEMORY).
+  uint32_t attach(TriangleMesh& mesh);
+  /// Throws Error(INVALID_ARGUMENT) for a number that no geometry has.
+  void detach(uint32_t geometry_id);
+
+  /// Throws Error, and then keeps what was committed before.
+  void commit();
+  /// nullptr before the first commit.
+  const CommittedScene* committed() const { return committed_.get(); }
+
+ private:
+  Array<AttachedMesh> attached_meshes() const;
+
+  Reference<Device> device_;
+  SceneParameters parameters_;
+  GrowingArray<TriangleMesh*> meshes_;  ///< by geometry id; nullptr: free
+  uint32_t lowest_free_ = 0;            ///< every lower id is taken
+  Owned<CommittedScene> committed_;
+};
+
+}  // namespace kiwami

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "kiwami/scene.h"
+
+namespace kiwami {
+
+/// The bounds and the default of one of KIWAMI_PARAMETER_*.
+struct ParameterBounds {
+  double lowest, highest, preset;
+  bool is_whole;  ///< only whole numbers are allowed
+};
+
+/// Throws Error(INVALID_ARGUMENT) for an unknown parameter.
+const ParameterBounds& parameter_bounds(uint32_t parameter);
+
+/// The values of all KIWAMI_PARAMETER_*, always within their bounds.
+class SceneParameters {
+ public:
+  SceneParameters();
+
+  /// Throws Error(INVALID_ARGUMENT) for an unknown parameter or a value out of bounds.
+  void set(uint32_t parameter, double value);
+
+  double operator[](uint32_t parameter) const { return values_[parameter]; }
+  /// The value of a parameter of whole numbers.
+  uint32_t whole(uint32_t parameter) const { return static_cast<uint32_t>(values_[parameter]); }
+
+ private:
+  double values_[KIWAMI_PARAMETER_VALIDATE_BUILD + 1];
+};
+
+}  // namespace kiwami

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batches of rays: their way to the kernels, over threads and from fields that lie apart.
+#pragma once
+
+#include "core/committed_scene.h"
+#include "kernels/kernel_table.h"
+
+namespace kiwami {
+
+/// Runs a kernel over a batch: on the device's threads if it is large, or on the calling thread.
+void trace(const CommittedScene& scene, TraversalKernel kernel, const RayBatch& batch,
+           bool on_calling_thread);
+
+/// The closest hits of rays whose fields lie apart.
+void trace_closest_hit(const CommittedScene& scene, const kiwami_ray_fields& rays,
+                       const kiwami_hit_fields& hits, size_t count, bool on_calling_thread);
+
+/// Whether rays whose fields lie apart have a hit. An occluded.stride of 0 is 1.
+void trace_any_hit(const CommittedScene& scene, const kiwami_ray_fields& rays,
+                   const kiwami_output_field& occluded, size_t count, bool on_calling_thread);
+
+}  // namespace kiwami
