@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiwami/geometry.h"
+
+#include "api/check.h"
+
+using namespace kiwami;
+using namespace kiwami::api;
+
+namespace {
+
+constexpr size_t kMinimumDescSize = 8;
+
+kiwami_triangle_mesh_desc default_mesh() {
+  kiwami_triangle_mesh_desc desc{};
+  desc.mask = ~uint32_t{0};
+  return desc;
+}
+
+}  // namespace
+
+extern "C" {
+
+kiwami_result kiwami_triangle_mesh_desc_init(kiwami_triangle_mesh_desc* desc, size_t size) {
+  return guarded(nullptr,
+                 [&] { init_descriptor(desc, size, kMinimumDescSize, "desc", default_mesh()); });
+}
+
+kiwami_result kiwami_triangle_mesh_create(kiwami_device* device,
+                                          const kiwami_triangle_mesh_desc* desc,
+                                          kiwami_geometry** geometry) {
+  if (geometry) *geometry = nullptr;
+  return guarded(object_of(device), [&] {
+    check_not_null(device, "device");
+    check_not_null(geometry, "geometry");
+    const kiwami_triangle_mesh_desc checked =
+        read_descriptor(desc, kMinimumDescSize, "desc", default_mesh());
+    TriangleMesh* mesh = TriangleMesh::create(*object_of(device), checked);
+    *geometry = reinterpret_cast<kiwami_geometry*>(mesh);
+  });
+}
+
+void kiwami_geometry_retain(kiwami_geometry* geometry) {
+  if (geometry) object_of(geometry)->retain();
+}
+
+void kiwami_geometry_release(kiwami_geometry* geometry) {
+  if (geometry) object_of(geometry)->release();
+}
+
+}  // extern "C"

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiwami/scene.h"
+
+#include "api/check.h"
+#include "math/float_environment.h"
+
+using namespace kiwami;
+using namespace kiwami::api;
+
+namespace {
+
+constexpr size_t kMinimumInfoSize = 8;
+
+const CommittedScene& committed(const Scene& scene) {
+  if (!scene.committed()) {
+    throw Error(KIWAMI_ERROR_INVALID_STATE,
+                "scene was never committed, expected a successful kiwami_scene_commit before");
+  }
+  return *scene.committed();
+}
+
+}  // namespace
+
+extern "C" {
+
+kiwami_result kiwami_scene_create(kiwami_device* device, kiwami_scene** scene) {
+  if (scene) *scene = nullptr;
+  return guarded(object_of(device), [&] {
+    check_not_null(device, "device");
+    check_not_null(scene, "scene");
+    *scene = reinterpret_cast<kiwami_scene*>(Scene::create(*object_of(device)));
+  });
+}
+
+void kiwami_scene_retain(kiwami_scene* scene) {
+  if (scene) object_of(scene)->retain();
+}
+
+void kiwami_scene_release(kiwami_scene* scene) {
+  if (scene) object_of(scene)->release();
+}
+
+kiwami_result kiwami_scene_attach(kiwami_scene* scene, kiwami_geometry* geometry,
+                                  uint32_t* geometry_id) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    check_not_null(geometry, "geometry");
+    if (&object_of(geometry)->device() != &object_of(scene)->device()) {
+      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                  "geometry is of another device, expected one of the scene's device");
+    }
+    const uint32_t id = object_of(scene)->attach(*object_of(geometry));
+    if (geometry_id) *geometry_id = id;
+  });
+}
+
+kiwami_result kiwami_scene_detach(kiwami_scene* scene, uint32_t geometry_id) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    object_of(scene)->detach(geometry_id);
+  });
+}
+
+kiwami_result kiwami_scene_set_parameter(kiwami_scene* scene, uint32_t parameter, double value) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    object_of(scene)->parameters().set(parameter, value);
+  });
+}
+
+kiwami_result kiwami_parameter_bounds(uint32_t parameter, double* lowest, double* highest,
+                                      double* preset) {
+  return guarded(nullptr, [&] {
+    const ParameterBounds& bounds = parameter_bounds(parameter);
+    if (lowest) *lowest = bounds.lowest;
+    if (highest) *highest = bounds.highest;
+    if (preset) *preset = bounds.preset;
+  });
+}
+
+kiwami_result kiwami_scene_commit(kiwami_scene* scene) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    const DefaultFloatEnvironment environment;
+    object_of(scene)->commit();
+  });
+}
+
+kiwami_result kiwami_scene_get_info(const kiwami_scene* scene, kiwami_scene_info* info) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    check_not_null(info, "info");
+    write_info(info, kMinimumInfoSize, "info", committed(*object_of(scene)).info());
+  });
+}
+
+kiwami_result kiwami_scene_validate(const kiwami_scene* scene) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    const DefaultFloatEnvironment environment;
+    committed(*object_of(scene)).validate();
+  });
+}
+
+}  // extern "C"

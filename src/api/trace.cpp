@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiwami/trace.h"
+
+#include <limits>
+
+#include "api/check.h"
+#include "core/trace.h"
+
+using namespace kiwami;
+using namespace kiwami::api;
+
+namespace {
+
+constexpr size_t kMinimumStructSize = 8;
+
+constexpr kiwami_ray_fields kNoRays{};
+constexpr kiwami_hit_fields kNoHits{};
+constexpr kiwami_query kDefaultQuery{};
+
+/// The structure to trace, of a scene that may be NULL or never committed.
+const CommittedScene& committed_of(const kiwami_scene* scene) {
+  check_not_null(scene, "scene");
+  const CommittedScene* committed = object_of(scene)->committed();
+  if (!committed) {
+    throw Error(KIWAMI_ERROR_INVALID_STATE,
+                "scene was never committed, expected a successful kiwami_scene_commit before");
+  }
+  return *committed;
+}
+
+bool is_on_calling_thread(const kiwami_query* query) {
+  if (!query) return false;
+  const kiwami_query checked = read_descriptor(query, kMinimumStructSize, "query", kDefaultQuery);
+  if (checked.flags & ~uint32_t{KIWAMI_QUERY_CALLING_THREAD}) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "query.flags is 0x%x, expected KIWAMI_QUERY_* bits",
+                checked.flags);
+  }
+  return (checked.flags & KIWAMI_QUERY_CALLING_THREAD) != 0;
+}
+
+void check_reserved(const char* name, uint32_t reserved) {
+  if (reserved != 0) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "%s is %u, expected 0", name, reserved);
+  }
+}
+
+/// Throws unless count elements of size bytes, stride bytes apart, end within the address space.
+void check_array(const char* name, const void* data, size_t stride, size_t size, size_t count) {
+  check_not_null(data, name);
+  if (stride != 0 && stride < size) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "the stride of %s is %zu, expected at least %zu, or 0 for %zu", name, stride, size,
+                size);
+  }
+  const size_t step = stride ? stride : size;
+  const size_t limit = std::numeric_limits<uintptr_t>::max() - reinterpret_cast<uintptr_t>(data);
+  if (size > limit || count - 1 > (limit - size) / step) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "the %zu elements of %s, %zu bytes apart, reach beyond the address space, expected "
+                "an extent of at most %zu bytes",
+                count, name, step, limit);
+  }
+}
+
+void check_output_field(const char* name, const kiwami_output_field& field, size_t count) {
+  if (!field.data) return;
+  if (count > 1 && field.stride < sizeof(float)) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "the stride of %s is %llu for %zu rays, expected at least 4", name,
+                static_cast<unsigned long long>(field.stride), count);
+  }
+  check_array(name, field.data, static_cast<size_t>(field.stride), sizeof(float), count);
+}
+
+/// An input field may repeat one element (stride 0) or overlap itself: only its end is checked.
+void check_input_field(const char* name, const kiwami_input_field& field, size_t count) {
+  if (!field.data || field.stride == 0) return;
+  const size_t limit =
+      std::numeric_limits<uintptr_t>::max() - reinterpret_cast<uintptr_t>(field.data);
+  if (sizeof(float) > limit || count - 1 > (limit - sizeof(float)) / field.stride) {
+    throw Error(
+        KIWAMI_ERROR_INVALID_ARGUMENT,
+        "the %zu elements of %s, %llu bytes apart, reach beyond the address space, expected "
+        "an extent of at most %zu bytes",
+        count, name, static_cast<unsigned long long>(field.stride), limit);
+  }
+}
+
+void check_hit_fields(const kiwami_hit_fields& hits, size_t count) {
+  check_output_field("hits.t", hits.t, count);
+  check_output_field("hits.u", hits.u, count);
+  check_output_field("hits.v", hits.v, count);
+  check_output_field("hits.normal_x", hits.normal_x, count);
+  check_output_field("hits.normal_y", hits.normal_y, count);
+  check_output_field("hits.normal_z", hits.normal_z, count);
+  check_output_field("hits.primitive_id", hits.primitive_id, count);
+  check_output_field("hits.geometry_id", hits.geometry_id, count);
+  check_output_field("hits.instance_id", hits.instance_id, count);
+}
+
+void check_ray_fields(const kiwami_ray_fields& rays, size_t count) {
+  check_input_field("rays.origin_x", rays.origin_x, count);
+  check_input_field("rays.origin_y", rays.origin_y, count);
+  check_input_field("rays.origin_z", rays.origin_z, count);
+  check_input_field("rays.direction_x", rays.direction_x, count);
+  check_input_field("rays.direction_y", rays.direction_y, count);
+  check_input_field("rays.direction_z", rays.direction_z, count);
+  check_input_field("rays.tmin", rays.tmin, count);
+  check_input_field("rays.tmax", rays.tmax, count);
+  check_input_field("rays.time", rays.time, count);
+  check_input_field("rays.mask", rays.mask, count);
+  check_input_field("rays.flags", rays.flags, count);
+}
+
+/// The fields of count rays, of which an origin and a direction must be there.
+kiwami_ray_fields read_ray_fields(const kiwami_ray_fields* fields, size_t count) {
+  const kiwami_ray_fields rays = read_descriptor(fields, kMinimumStructSize, "rays", kNoRays);
+  check_reserved("rays.reserved", rays.reserved);
+  if (count == 0) return rays;
+  check_not_null(rays.origin_x.data, "rays.origin_x.data");
+  check_not_null(rays.origin_y.data, "rays.origin_y.data");
+  check_not_null(rays.origin_z.data, "rays.origin_z.data");
+  check_not_null(rays.direction_x.data, "rays.direction_x.data");
+  check_not_null(rays.direction_y.data, "rays.direction_y.data");
+  check_not_null(rays.direction_z.data, "rays.direction_z.data");
+  return rays;
+}
+
+/// Traces an array of rays to an array of answers of answer_size bytes each.
+void trace_array(const CommittedScene& committed, TraversalKernel kernel, const RayBatch& batch,
+                 size_t answer_size, const char* answers_name, const kiwami_query* query) {
+  const bool on_calling_thread = is_on_calling_thread(query);
+  if (batch.count == 0) return;
+  if (committed.validates_arguments()) {
+    check_array("rays", batch.rays, batch.ray_stride, sizeof(kiwami_ray), batch.count);
+    check_array(answers_name, batch.answers, batch.answer_stride, answer_size, batch.count);
+  }
+  RayBatch packed = batch;
+  if (packed.ray_stride == 0) packed.ray_stride = sizeof(kiwami_ray);
+  if (packed.answer_stride == 0) packed.answer_stride = answer_size;
+  trace(committed, kernel, packed, on_calling_thread);
+}
+
+}  // namespace
+
+extern "C" {
+
+kiwami_result kiwami_ray_fields_init(kiwami_ray_fields* rays, size_t size) {
+  return guarded(nullptr,
+                 [&] { init_descriptor(rays, size, kMinimumStructSize, "rays", kNoRays); });
+}
+
+kiwami_result kiwami_hit_fields_init(kiwami_hit_fields* hits, size_t size) {
+  return guarded(nullptr,
+                 [&] { init_descriptor(hits, size, kMinimumStructSize, "hits", kNoHits); });
+}
+
+kiwami_result kiwami_query_init(kiwami_query* query, size_t size) {
+  return guarded(nullptr,
+                 [&] { init_descriptor(query, size, kMinimumStructSize, "query", kDefaultQuery); });
+}
+
+kiwami_result kiwami_closest_hit(const kiwami_scene* scene, const kiwami_ray* rays,
+                                 size_t ray_stride, kiwami_hit* hits, size_t hit_stride,
+                                 size_t count, const kiwami_query* query) {
+  return guarded(device_of(scene), [&] {
+    const CommittedScene& committed = committed_of(scene);
+    trace_array(committed, committed.kernels().closest_hit,
+                {reinterpret_cast<const unsigned char*>(rays), ray_stride,
+                 reinterpret_cast<unsigned char*>(hits), hit_stride, count},
+                sizeof(kiwami_hit), "hits", query);
+  });
+}
+
+kiwami_result kiwami_any_hit(const kiwami_scene* scene, const kiwami_ray* rays, size_t ray_stride,
+                             uint8_t* occluded, size_t stride, size_t count,
+                             const kiwami_query* query) {
+  return guarded(device_of(scene), [&] {
+    const CommittedScene& committed = committed_of(scene);
+    trace_array(committed, committed.kernels().any_hit,
+                {reinterpret_cast<const unsigned char*>(rays), ray_stride, occluded, stride, count},
+                sizeof(uint8_t), "occluded", query);
+  });
+}
+
+kiwami_result kiwami_closest_hit_fields(const kiwami_scene* scene, const kiwami_ray_fields* rays,
+                                        const kiwami_hit_fields* hits, size_t count,
+                                        const kiwami_query* query) {
+  return guarded(device_of(scene), [&] {
+    const CommittedScene& committed = committed_of(scene);
+    const bool on_calling_thread = is_on_calling_thread(query);
+    const kiwami_ray_fields inputs = read_ray_fields(rays, count);
+    const kiwami_hit_fields outputs = read_descriptor(hits, kMinimumStructSize, "hits", kNoHits);
+    check_reserved("hits.reserved", outputs.reserved);
+    if (count == 0) return;
+    if (committed.validates_arguments()) {
+      check_ray_fields(inputs, count);
+      check_hit_fields(outputs, count);
+    }
+    trace_closest_hit(committed, inputs, outputs, count, on_calling_thread);
+  });
+}
+
+kiwami_result kiwami_any_hit_fields(const kiwami_scene* scene, const kiwami_ray_fields* rays,
+                                    const kiwami_output_field* occluded, size_t count,
+                                    const kiwami_query* query) {
+  return guarded(device_of(scene), [&] {
+    const CommittedScene& committed = committed_of(scene);
+    const bool on_calling_thread = is_on_calling_thread(query);
+    const kiwami_ray_fields inputs = read_ray_fields(rays, count);
+    check_not_null(occluded, "occluded");
+    if (count == 0) return;
+    if (committed.validates_arguments()) {
+      check_ray_fields(inputs, count);
+      if (occluded->data) {
+        check_array("occluded.data", occluded->data, static_cast<size_t>(occluded->stride),
+                    sizeof(uint8_t), count);
+      }
+    }
+    trace_any_hit(committed, inputs, *occluded, count, on_calling_thread);
+  });
+}
+
+}  // extern "C"
