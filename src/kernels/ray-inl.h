@@ -110,7 +110,9 @@ struct SlabRay {
   vfloat<N> near_offset[3];
   vfloat<N> far_offset[3];
   vfloat<N> tmin;
-  int near_side[3];  ///< 0: the lower bound is met first
+  /// Where in a node the planes lie that the ray meets first (last) along an axis, in bytes.
+  size_t near_plane[3];
+  size_t far_plane[3];
 };
 
 template <int N>
@@ -137,7 +139,10 @@ inline void set_up_slabs(const ScalarRay& ray, const TreeView& tree, SlabRay<N>&
     out.reciprocal[axis] = broadcast<N>(reciprocal);
     out.near_offset[axis] = broadcast<N>(-product - margin);
     out.far_offset[axis] = broadcast<N>(margin - product);
-    out.near_side[axis] = __builtin_signbit(direction) ? 1 : 0;
+    const size_t lower = 2 * axis * N * sizeof(float), upper = lower + N * sizeof(float);
+    const bool is_backward = __builtin_signbit(direction);
+    out.near_plane[axis] = is_backward ? upper : lower;
+    out.far_plane[axis] = is_backward ? lower : upper;
   }
   out.tmin = broadcast<N>(scaled_lower(ray, ray.tmin));
 }
