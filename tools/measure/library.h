@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <kiwami/kiwami.h>
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "measure/tracer.h"
+#include "scene/scene_file.h"
+
+namespace kiwami::tools {
+
+/// What a call of the library answered when it failed: its own sentence.
+class LibraryError : public std::runtime_error {
+ public:
+  LibraryError(kiwami_result result, const std::string& sentence)
+      : std::runtime_error(sentence), result_(result) {}
+  kiwami_result result() const { return result_; }
+
+ private:
+  kiwami_result result_;
+};
+
+/// Owns a device.
+class Device {
+ public:
+  /// `isa` is one of KIWAMI_ISA_*; 0 threads: one per processor.
+  explicit Device(uint32_t isa = KIWAMI_ISA_AUTO, uint32_t thread_count = 0);
+  ~Device() { kiwami_device_release(device_); }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  kiwami_device* get() const { return device_; }
+  const kiwami_device_info& info() const { return info_; }
+
+ private:
+  kiwami_device* device_ = nullptr;
+  kiwami_device_info info_{};
+};
+
+/// How a scene's acceleration structure is to be built.
+struct BuildOptions {
+  uint32_t bvh_width = 0;  ///< 0: the device's default
+  bool merge_leaves = true;
+};
+
+/// Owns a committed scene whose geometry i is mesh i of the file. It shares the file's buffers, so
+/// the file must outlive it.
+class BuiltScene : public Tracer {
+ public:
+  /// `file` must have no instances (see flatten).
+  BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options = {});
+  ~BuiltScene() override { kiwami_scene_release(scene_); }
+  BuiltScene(const BuiltScene&) = delete;
+  BuiltScene& operator=(const BuiltScene&) = delete;
+
+  const kiwami_scene_info& info() const { return info_; }
+  void closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const override;
+  void any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
+
+ private:
+  void attach(kiwami_device* device, const Mesh& mesh);
+  void commit();
+
+  kiwami_scene* scene_ = nullptr;
+  kiwami_scene_info info_{};
+};
+
+/// The KIWAMI_ISA_* that can run here, from scalar to the best.
+std::vector<uint32_t> available_isas();
+
+/// The number of an ISA's lower-case name, "auto" included; throws LibraryError for another name.
+uint32_t isa_of_name(const std::string& name);
+
+}  // namespace kiwami::tools
