@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <bit>
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+
+#include "core/error.h"
+#include "math/rounding.h"
+#include "wide/wide_tree.h"
+
+namespace kiwami {
+namespace {
+
+template <typename... Values>
+[[noreturn]] void fail(const char* format, Values... values) {
+  throw Error(KIWAMI_ERROR_VALIDATION, format, values...);
+}
+
+/// The walk over one tree, path by path.
+template <int N>
+class WideVerifier {
+ public:
+  WideVerifier(const WideTree& tree, const TriangleSource& source, uint64_t primitive_count,
+               Memory& memory)
+      : tree_(tree),
+        source_(source),
+        primitive_count_(primitive_count),
+        nodes_(static_cast<const WideNode<N>*>(tree.view.nodes)),
+        leaves_(static_cast<const LeafBlock<N>*>(tree.view.leaves)),
+        owned_slots_(memory, tree.node_count),
+        owned_lanes_(memory, tree.leaf_block_count),
+        has_triangle_(memory, id_count(source)),
+        stack_(memory) {
+    owned_slots_.fill_zero();
+    owned_lanes_.fill_zero();
+    has_triangle_.fill_zero();
+  }
+
+  void run() {
+    check_sizes();
+    check_view();
+    if (tree_.view.root_mask != 0) walk();
+    check_unused();
+    check_totals();
+  }
+
+ private:
+  /// A child reference, the box that its parent stores for it, and where that stands.
+  struct Visit {
+    uint32_t reference;
+    uint32_t mask;
+    uint32_t depth;
+    uint32_t parent;
+    Bounds box;
+  };
+
+  static size_t id_count(const TriangleSource& source) {
+    if (source.mesh_count == 0) return 0;
+    const TriangleMeshView& last = source.meshes[source.mesh_count - 1];
+    return size_t{last.first_id} + last.triangle_count;
+  }
+
+  void check_sizes() const {
+    if (tree_.leaf_width != tree_.width) {
+      fail("the leaf width is %u, expected the node width %u", tree_.leaf_width, tree_.width);
+    }
+    if (tree_.nodes.size() != tree_.node_count * sizeof(WideNode<N>) ||
+        tree_.view.nodes != tree_.nodes.data()) {
+      fail("%zu bytes of nodes do not hold %llu nodes", tree_.nodes.size(),
+           static_cast<unsigned long long>(tree_.node_count));
+    }
+    if (tree_.leaves.size() != tree_.leaf_block_count * sizeof(LeafBlock<N>) ||
+        tree_.view.leaves != tree_.leaves.data()) {
+      fail("%zu bytes of leaves do not hold %llu leaf blocks", tree_.leaves.size(),
+           static_cast<unsigned long long>(tree_.leaf_block_count));
+    }
+  }
+
+  void check_view() const {
+    const TreeView& view = tree_.view;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(view.centre[axis])) {
+        fail("the centre on axis %d is %g, expected a finite number", axis,
+             static_cast<double>(view.centre[axis]));
+      }
+      if (!std::isfinite(view.greatest_bound[axis]) || view.greatest_bound[axis] < 0.0f) {
+        fail("the greatest bound on axis %d is %g, expected a finite number of at least 0", axis,
+             static_cast<double>(view.greatest_bound[axis]));
+      }
+    }
+  }
+
+  void walk() {
+    const Vec3f limit = tree_.view.greatest_bound;
+    const Bounds root_box = {{-limit.x, -limit.y, -limit.z}, limit};
+    stack_.push_back({tree_.view.root, tree_.view.root_mask, 0, KIWAMI_INVALID_ID, root_box});
+    while (!stack_.empty()) {
+      const Visit visit = stack_.back();
+      stack_.pop_back();
+      if (visit.reference & kLeafFlag) {
+        visit_leaf(visit);
+      } else {
+        visit_node(visit);
+      }
+    }
+  }
+
+  /// Marks the slots (lanes) of a mask as owned by the path that has reached them.
+  static void claim(const char* what, uint32_t index, uint32_t mask, uint64_t count,
+                    uint32_t parent, Array<uint16_t>& owned) {
+    if (index >= count) {
+      fail("node %u refers to %s %u, expected below %llu", parent, what, index,
+           static_cast<unsigned long long>(count));
+    }
+    if (mask == 0 || (mask >> N) != 0) {
+      fail("node %u refers to %s %u with mask 0x%x, expected some of %d bits", parent, what, index,
+           mask, N);
+    }
+    if (owned[index] & mask) {
+      fail("node %u refers to %s %u with mask 0x%x, of which others own 0x%x", parent, what, index,
+           mask, owned[index] & mask);
+    }
+    owned[index] = static_cast<uint16_t>(owned[index] | mask);
+  }
+
+  void visit_node(const Visit& visit) {
+    const uint32_t index = visit.reference;
+    claim("node", index, visit.mask, tree_.node_count, visit.parent, owned_slots_);
+    const uint32_t depth = visit.depth + 1;
+    if (depth > kMaxWideDepth) {
+      fail("node %u is at depth %u, expected at most %u", index, depth, kMaxWideDepth);
+    }
+    depth_ = depth > depth_ ? depth : depth_;
+    const WideNode<N>& node = nodes_[index];
+    for (uint32_t mask = visit.mask; mask != 0; mask &= mask - 1) {
+      const int slot = std::countr_zero(mask);
+      Bounds box;
+      for (int axis = 0; axis < 3; ++axis) {
+        box.lower[axis] = node.bounds[axis][0][slot];
+        box.upper[axis] = node.bounds[axis][1][slot];
+      }
+      if (box.is_empty()) fail("the box of slot %d of node %u is empty", slot, index);
+      if (!visit.box.contains(box)) {
+        fail("the box of slot %d of node %u leaves the box that its parent, node %u, stores", slot,
+             index, visit.parent);
+      }
+      ++used_slots_;
+      stack_.push_back({node.child[slot], node.mask[slot], depth, index, box});
+    }
+  }
+
+  void visit_leaf(const Visit& visit) {
+    const uint32_t index = visit.reference & ~kLeafFlag;
+    claim("leaf block", index, visit.mask, tree_.leaf_block_count, visit.parent, owned_lanes_);
+    for (uint32_t mask = visit.mask; mask != 0; mask &= mask - 1) {
+      check_triangle(index, std::countr_zero(mask), visit.box);
+      ++used_lanes_;
+    }
+  }
+
+  void check_triangle(uint32_t block, int lane, const Bounds& box) {
+    const LeafBlock<N>& leaf = leaves_[block];
+    const uint32_t id = leaf.id[lane];
+    if (id >= has_triangle_.size()) {
+      fail("lane %d of leaf block %u has id %u, expected below %zu", lane, block, id,
+           has_triangle_.size());
+    }
+    if (has_triangle_[id]) fail("triangle %u stands in two lanes", id);
+    has_triangle_[id] = 1;
+    Vec3f corner[3];
+    source_.corners_of(id, corner);
+    for (int vertex = 0; vertex < 3; ++vertex) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const float original = corner[vertex][axis];
+        const float stored = leaf.position[vertex][axis][lane];
+        if (std::memcmp(&stored, &original, sizeof(float)) != 0) {
+          fail("vertex %d of triangle %u in leaf block %u is not the original one", vertex, id,
+               block);
+        }
+        const float centre = tree_.view.centre[axis];
+        if (!(box.lower[axis] <= subtract_down(original, centre) &&
+              subtract_up(original, centre) <= box.upper[axis])) {
+          fail("triangle %u in leaf block %u leaves its box on axis %d", id, block, axis);
+        }
+      }
+    }
+  }
+
+  void check_unused() const {
+    constexpr uint32_t kAll = (1u << N) - 1;
+    for (uint32_t i = 0; i < tree_.node_count; ++i) {
+      for (uint32_t mask = kAll & ~owned_slots_[i]; mask != 0; mask &= mask - 1) {
+        check_unused_slot(i, std::countr_zero(mask));
+      }
+    }
+    for (uint32_t i = 0; i < tree_.leaf_block_count; ++i) {
+      for (uint32_t mask = kAll & ~owned_lanes_[i]; mask != 0; mask &= mask - 1) {
+        check_unused_lane(i, std::countr_zero(mask));
+      }
+    }
+  }
+
+  void check_unused_slot(uint32_t index, int slot) const {
+    const WideNode<N>& node = nodes_[index];
+    bool is_unused = node.child[slot] == 0 && node.mask[slot] == 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      is_unused = is_unused && node.bounds[axis][0][slot] == FLT_MAX &&
+                  node.bounds[axis][1][slot] == -FLT_MAX;
+    }
+    if (!is_unused) fail("slot %d of node %u has contents but no owner", slot, index);
+  }
+
+  void check_unused_lane(uint32_t index, int lane) const {
+    const LeafBlock<N>& leaf = leaves_[index];
+    bool is_unused = leaf.id[lane] == KIWAMI_INVALID_ID;
+    for (int i = 0; i < 9; ++i) {
+      is_unused = is_unused && std::isnan(leaf.position[i / 3][i % 3][lane]);
+    }
+    if (!is_unused) fail("lane %d of leaf block %u has contents but no owner", lane, index);
+  }
+
+  void check_totals() const {
+    const struct {
+      const char* what;
+      uint64_t stated, counted;
+    } totals[] = {{"used slots", tree_.used_slots, used_slots_},
+                  {"used lanes", tree_.used_lanes, used_lanes_},
+                  {"levels", tree_.depth, depth_},
+                  {"triangles", primitive_count_, used_lanes_}};
+    for (const auto& total : totals) {
+      if (total.stated != total.counted) {
+        fail("the tree has %llu %s, expected %llu", static_cast<unsigned long long>(total.counted),
+             total.what, static_cast<unsigned long long>(total.stated));
+      }
+    }
+  }
+
+  const WideTree& tree_;
+  const TriangleSource& source_;
+  uint64_t primitive_count_;
+  const WideNode<N>* nodes_;
+  const LeafBlock<N>* leaves_;
+  Array<uint16_t> owned_slots_;
+  Array<uint16_t> owned_lanes_;
+  Array<uint8_t> has_triangle_;
+  GrowingArray<Visit> stack_;
+  uint64_t used_slots_ = 0;
+  uint64_t used_lanes_ = 0;
+  uint32_t depth_ = 0;
+};
+
+}  // namespace
+
+void verify_wide_tree(const WideTree& tree, const TriangleSource& source, uint64_t primitive_count,
+                      Memory& memory) {
+  switch (tree.width) {
+    case 4:
+      return WideVerifier<4>(tree, source, primitive_count, memory).run();
+    case 8:
+      return WideVerifier<8>(tree, source, primitive_count, memory).run();
+    case 16:
+      return WideVerifier<16>(tree, source, primitive_count, memory).run();
+    default:
+      fail("the tree's width is %u, expected 4, 8 or 16", tree.width);
+  }
+}
+
+}  // namespace kiwami

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wide/wide_tree.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <limits>
+
+#include "core/error.h"
+#include "math/rounding.h"
+#include "wide/contraction.h"
+#include "wide/leaf_merging.h"
+
+namespace kiwami {
+namespace {
+
+/// Nodes (leaf blocks) that one task packs.
+constexpr size_t kPackingBlock = 1024;
+
+/// The stages before packing.
+struct Layout {
+  Contraction contraction;
+  SharedPlaces nodes;   ///< of the contracted nodes
+  SharedPlaces leaves;  ///< of the leaves, by number
+};
+
+SharedPlaces place(const Array<uint8_t>& sizes, const WideTreeConfig& config, Memory& memory) {
+  return config.merge_leaves ? place_shared(sizes, config.width, config.merge_ring, memory)
+                             : place_alone(sizes, memory);
+}
+
+Layout make_layout(const BinaryBvh& binary, const WideTreeConfig& config, Memory& memory) {
+  Layout layout{contract(binary, config.width, memory), {}, {}};
+  const Contraction& contraction = layout.contraction;
+  Array<uint8_t> node_sizes(memory, contraction.nodes.size());
+  for (size_t i = 0; i < node_sizes.size(); ++i) {
+    node_sizes[i] = static_cast<uint8_t>(contraction.nodes[i].slot_count);
+  }
+  Array<uint8_t> leaf_sizes(memory, contraction.leaf_count);
+  for (const ContractedSlot& slot : contraction.slots) {
+    if (!slot.is_leaf()) continue;
+    const BinaryNode& leaf = binary.nodes[slot.binary_node];
+    if (leaf.count > config.width) {
+      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "leaf %u owns %u triangles, expected at most %u",
+                  slot.binary_node, leaf.count, config.width);
+    }
+    leaf_sizes[slot.child & ~kLeafFlag] = static_cast<uint8_t>(leaf.count);
+  }
+  layout.nodes = place(node_sizes, config, memory);
+  layout.leaves = place(leaf_sizes, config, memory);
+  return layout;
+}
+
+/// Writes the nodes and leaf blocks of a tree.
+template <int N>
+class Packer {
+ public:
+  Packer(const BinaryBvh& binary, const TriangleSource& source, const Layout& layout,
+         WideTree& tree)
+      : binary_(binary),
+        source_(source),
+        layout_(layout),
+        centre_(tree.view.centre),
+        nodes_(reinterpret_cast<WideNode<N>*>(tree.nodes.data())),
+        leaves_(reinterpret_cast<LeafBlock<N>*>(tree.leaves.data())) {}
+
+  void run(const Parallel& parallel) {
+    parallel.for_blocks(layout_.nodes.count, kPackingBlock, [this](size_t begin, size_t end) {
+      std::fill(nodes_ + begin, nodes_ + end, unused_node());
+    });
+    parallel.for_blocks(layout_.leaves.count, kPackingBlock, [this](size_t begin, size_t end) {
+      std::fill(leaves_ + begin, leaves_ + end, unused_leaf());
+    });
+    // Owners of one node write different slots, so they need no order.
+    const Array<ContractedNode>& owners = layout_.contraction.nodes;
+    parallel.for_blocks(owners.size(), kPackingBlock, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) pack_node(owners[i], layout_.nodes.places[i]);
+    });
+    const ContractedSlot& root = layout_.contraction.slots[0];
+    if (root.is_leaf()) pack_leaf(root);
+  }
+
+ private:
+  static WideNode<N> unused_node() {
+    WideNode<N> node;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::fill_n(node.bounds[axis][0], N, FLT_MAX);
+      std::fill_n(node.bounds[axis][1], N, -FLT_MAX);
+    }
+    std::fill_n(node.child, N, 0u);
+    std::fill_n(node.mask, N, uint16_t{0});
+    return node;
+  }
+
+  static LeafBlock<N> unused_leaf() {
+    LeafBlock<N> leaf;
+    std::fill_n(&leaf.position[0][0][0], 9 * N, std::numeric_limits<float>::quiet_NaN());
+    std::fill_n(leaf.id, N, KIWAMI_INVALID_ID);
+    return leaf;
+  }
+
+  void pack_node(const ContractedNode& owner, const SharedPlace& place) {
+    WideNode<N>& node = nodes_[place.index];
+    for (uint32_t i = 0; i < owner.slot_count; ++i) {
+      const ContractedSlot& slot = layout_.contraction.slots[owner.first_slot + i];
+      const uint32_t target = place.first + i;
+      const Bounds& box = binary_.nodes[slot.binary_node].bounds;
+      for (int axis = 0; axis < 3; ++axis) {
+        node.bounds[axis][0][target] = subtract_down(box.lower[axis], centre_[axis]);
+        node.bounds[axis][1][target] = subtract_up(box.upper[axis], centre_[axis]);
+      }
+      const uint32_t index = slot.child & ~kLeafFlag;
+      const SharedPlace& below =
+          slot.is_leaf() ? layout_.leaves.places[index] : layout_.nodes.places[index];
+      node.child[target] = below.index | (slot.child & kLeafFlag);
+      node.mask[target] = below.mask;
+      if (slot.is_leaf()) pack_leaf(slot);
+    }
+  }
+
+  void pack_leaf(const ContractedSlot& slot) {
+    const SharedPlace& place = layout_.leaves.places[slot.child & ~kLeafFlag];
+    const BinaryNode& leaf = binary_.nodes[slot.binary_node];
+    LeafBlock<N>& block = leaves_[place.index];
+    for (uint32_t i = 0; i < leaf.count; ++i) {
+      const uint32_t id = binary_.primitive_ids[leaf.first + i];
+      const uint32_t lane = place.first + i;
+      Vec3f corner[3];
+      source_.corners_of(id, corner);
+      for (int vertex = 0; vertex < 3; ++vertex) {
+        for (int axis = 0; axis < 3; ++axis) {
+          block.position[vertex][axis][lane] = corner[vertex][axis];
+        }
+      }
+      block.id[lane] = id;
+    }
+  }
+
+  const BinaryBvh& binary_;
+  const TriangleSource& source_;
+  const Layout& layout_;
+  Vec3f centre_;
+  WideNode<N>* nodes_;
+  LeafBlock<N>* leaves_;
+};
+
+template <int N>
+void pack(const BinaryBvh& binary, const TriangleSource& source, const Layout& layout,
+          WideTree& tree, Memory& memory, const Parallel& parallel) {
+  tree.nodes = Array<unsigned char>(memory, tree.node_count * sizeof(WideNode<N>));
+  tree.leaves = Array<unsigned char>(memory, tree.leaf_block_count * sizeof(LeafBlock<N>));
+  Packer<N>(binary, source, layout, tree).run(parallel);
+}
+
+/// All of the view but the pointers. Boxes lie within the root's, and rounding keeps that order,
+/// so the root has the greatest bounds.
+TreeView make_view(const Bounds& root_box, const Layout& layout) {
+  TreeView view{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float lower = root_box.lower[axis], upper = root_box.upper[axis];
+    const float centre = 0.5f * lower + 0.5f * upper;
+    view.centre[axis] = centre;
+    view.greatest_bound[axis] = std::max(-subtract_down(lower, centre), subtract_up(upper, centre));
+  }
+  const ContractedSlot& root = layout.contraction.slots[0];
+  const SharedPlace& place = root.is_leaf() ? layout.leaves.places[0] : layout.nodes.places[0];
+  view.root = place.index | (root.child & kLeafFlag);
+  view.root_mask = place.mask;
+  return view;
+}
+
+double sah_cost_of(const Contraction& contraction, double root_area, const WideTreeConfig& config) {
+  // Points and lines have no area: there, each node is as likely to be met as the root.
+  if (!(root_area > 0.0)) {
+    return config.node_cost * static_cast<double>(contraction.nodes.size()) +
+           config.leaf_cost * static_cast<double>(contraction.leaf_count);
+  }
+  return (config.node_cost * contraction.node_area + config.leaf_cost * contraction.leaf_area) /
+         root_area;
+}
+
+}  // namespace
+
+WideTree build_wide_tree(const BinaryBvh& binary, const TriangleSource& source,
+                         const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {
+  if (config.width != 4 && config.width != 8 && config.width != 16) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "width is %u, expected 4, 8 or 16", config.width);
+  }
+  WideTree tree;
+  tree.width = tree.leaf_width = config.width;
+  if (binary.primitive_ids.empty()) {
+    tree.nodes = Array<unsigned char>(memory, 0);
+    tree.leaves = Array<unsigned char>(memory, 0);
+    return tree;
+  }
+  const Layout layout = make_layout(binary, config, memory);
+  const Contraction& contraction = layout.contraction;
+  const Bounds& root_box = binary.nodes[0].bounds;
+  tree.view = make_view(root_box, layout);
+  tree.node_count = layout.nodes.count;
+  tree.leaf_block_count = layout.leaves.count;
+  tree.used_slots = contraction.slots.size() - 1;
+  tree.used_lanes = binary.primitive_ids.size();
+  tree.depth = contraction.depth;
+  tree.sah_cost = sah_cost_of(contraction, root_box.half_area(), config);
+  switch (config.width) {
+    case 4:
+      pack<4>(binary, source, layout, tree, memory, parallel);
+      break;
+    case 8:
+      pack<8>(binary, source, layout, tree, memory, parallel);
+      break;
+    default:
+      pack<16>(binary, source, layout, tree, memory, parallel);
+      break;
+  }
+  tree.view.nodes = tree.nodes.data();
+  tree.view.leaves = tree.leaves.data();
+  return tree;
+}
+
+}  // namespace kiwami
