@@ -50,6 +50,10 @@ View fit_view(const Box& box, Vec3 up, float vertical_field_of_view, float aspec
   return {box.center() + towards_eye * distance, box.center(), up, vertical_field_of_view};
 }
 
+View default_view(const SceneFile& scene, const Box& box, float aspect) {
+  return scene.view ? *scene.view : fit_view(box, {0, 1, 0}, kDefaultFieldOfView, aspect);
+}
+
 kiwami_ray make_ray(Vec3 origin, Vec3 direction, float tmin, float tmax) {
   return {origin.x,    origin.y, origin.z, tmin, direction.x, direction.y,
           direction.z, tmax,     0.0f,     ~0u,  0,           0};

@@ -9,6 +9,8 @@
 
 namespace kiwami::tools {
 
+constexpr float kDefaultFieldOfView = 45.0f;
+
 /// An axis-aligned box.
 struct Box {
   Vec3 low;
@@ -24,6 +26,9 @@ Box bounds_of(const kiwami_scene_info& info);
 
 /// A view that shows the whole box, from above and aside.
 View fit_view(const Box& box, Vec3 up, float vertical_field_of_view, float aspect);
+
+/// The view that the scene suggests, or one that shows all of it, the y axis upwards.
+View default_view(const SceneFile& scene, const Box& box, float aspect);
 
 /// A ray from `origin` with the defaults of all other fields.
 kiwami_ray make_ray(Vec3 origin, Vec3 direction, float tmin, float tmax);

@@ -13,7 +13,8 @@ double median(std::vector<double> values) {
 }
 
 std::vector<double> interleaved_medians(std::span<const std::function<void()>> contenders,
-                                        uint32_t rounds, const std::function<void()>& after_run) {
+                                        uint32_t rounds,
+                                        const std::function<void(size_t)>& after_run) {
   std::vector<std::vector<double>> seconds(contenders.size());
   for (uint32_t round = 0; round < rounds; ++round) {
     for (size_t turn = 0; turn < contenders.size(); ++turn) {
@@ -22,7 +23,7 @@ std::vector<double> interleaved_medians(std::span<const std::function<void()>> c
       contenders[i]();
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
       seconds[i].push_back(spent.count());
-      after_run();
+      after_run(i);
     }
   }
   std::vector<double> medians;

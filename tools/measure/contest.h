@@ -15,10 +15,11 @@ double median(std::vector<double> values);
 
 /// Times each contender once a round, all of them in turn, so that a disturbance of the machine or
 /// a change of its clock meets all alike; the order turns around from round to round. Returns the
-/// median seconds of each. `after_run` is called untimed after each run.
-std::vector<double> interleaved_medians(
-    std::span<const std::function<void()>> contenders, uint32_t rounds,
-    const std::function<void()>& after_run = [] {});
+/// median seconds of each. `after_run` is called untimed after each run, with the contender's
+/// number.
+std::vector<double> interleaved_medians(std::span<const std::function<void()>> contenders,
+                                        uint32_t rounds,
+                                        const std::function<void(size_t)>& after_run);
 
 /// A number that differs, as good as surely, when any bit of any hit differs (FNV-1a, 64 bits:
 /// G. Fowler, L. C. Noll, P. Vo, "The FNV Non-Cryptographic Hash Algorithm", 1991).

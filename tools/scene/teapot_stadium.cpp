@@ -56,8 +56,7 @@ void close_ring(Mesh& mesh, uint32_t ring, uint32_t segments, Vec3 center, bool 
 /// Turns a profile (x is the radius, y the height) around the y axis. Its ends on the axis are
 /// closed by fans.
 template <size_t Count>
-Mesh make_revolution(const char* name, const Curve (&profile)[Count], uint32_t steps,
-                     uint32_t segments) {
+Mesh make_revolution(const Curve (&profile)[Count], uint32_t steps, uint32_t segments) {
   std::vector<Vec3> points;
   for (const Curve& curve : profile) {
     for (uint32_t i = 0; i < steps; ++i) {
@@ -66,7 +65,6 @@ Mesh make_revolution(const char* name, const Curve (&profile)[Count], uint32_t s
   }
   points.push_back(profile[Count - 1][3]);
   Mesh mesh;
-  mesh.name = name;
   for (size_t ring = 1; ring + 1 < points.size(); ++ring) {
     for (uint32_t i = 0; i < segments; ++i) {
       const float angle = 2.0f * kPi * static_cast<float>(i) / static_cast<float>(segments);
@@ -82,10 +80,8 @@ Mesh make_revolution(const char* name, const Curve (&profile)[Count], uint32_t s
 }
 
 /// A closed tube along a curve in the plane z = 0; its radii go from `first` to `last`.
-Mesh make_tube(const char* name, const Curve& path, float first, float last, uint32_t steps,
-               uint32_t segments) {
+Mesh make_tube(const Curve& path, float first, float last, uint32_t steps, uint32_t segments) {
   Mesh mesh;
-  mesh.name = name;
   for (uint32_t j = 0; j <= steps; ++j) {
     const float t = static_cast<float>(j) / static_cast<float>(steps);
     const Vec3 center = curve_point(path, t);
@@ -104,6 +100,12 @@ Mesh make_tube(const char* name, const Curve& path, float first, float last, uin
   return mesh;
 }
 
+void append(Mesh& mesh, const Mesh& part) {
+  const auto first = static_cast<uint32_t>(mesh.vertex_count());
+  mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const uint32_t index : part.indices) mesh.indices.push_back(first + index);
+}
+
 Mesh make_body() {
   const Curve profile[] = {
       {{0.0f, 0.0f, 0}, {0.5f, 0.0f, 0}, {1.0f, 0.0f, 0}, {1.1f, 0.05f, 0}},
@@ -112,7 +114,7 @@ Mesh make_body() {
       {{1.15f, 2.1f, 0}, {1.1f, 2.2f, 0}, {1.0f, 2.2f, 0}, {1.0f, 2.1f, 0}},
       {{1.0f, 2.1f, 0}, {0.7f, 2.05f, 0}, {0.3f, 2.05f, 0}, {0.0f, 2.05f, 0}},
   };
-  return make_revolution("teapot body", profile, 36, 180);
+  return make_revolution(profile, 36, 180);
 }
 
 Mesh make_lid() {
@@ -122,10 +124,22 @@ Mesh make_lid() {
       {{0.15f, 2.48f, 0}, {0.08f, 2.55f, 0}, {0.28f, 2.6f, 0}, {0.28f, 2.72f, 0}},
       {{0.28f, 2.72f, 0}, {0.28f, 2.82f, 0}, {0.15f, 2.88f, 0}, {0.0f, 2.88f, 0}},
   };
-  return make_revolution("teapot lid", profile, 24, 120);
+  return make_revolution(profile, 24, 120);
 }
 
-/// A lathe's bowl as a stadium: an oval seen from above, in steps of tiers.
+Mesh make_teapot() {
+  const Curve spout = {{1.4f, 0.7f, 0}, {2.3f, 0.7f, 0}, {1.9f, 1.9f, 0}, {2.6f, 2.1f, 0}};
+  const Curve handle = {{-1.3f, 1.75f, 0}, {-2.9f, 2.2f, 0}, {-2.5f, 0.7f, 0}, {-1.5f, 0.6f, 0}};
+  Mesh mesh;
+  mesh.name = "teapot";
+  append(mesh, make_body());
+  append(mesh, make_lid());
+  append(mesh, make_tube(spout, 0.45f, 0.14f, 80, 90));
+  append(mesh, make_tube(handle, 0.15f, 0.15f, 100, 60));
+  return mesh;
+}
+
+/// Tiers of steps around an oval, open towards the floor.
 Mesh make_tiers() {
   constexpr uint32_t kSegments = 48;
   constexpr uint32_t kTiers = 12;
@@ -162,13 +176,8 @@ Mesh make_floor() {
 }  // namespace
 
 SceneFile make_teapot_stadium() {
-  const Curve spout = {{1.4f, 0.7f, 0}, {2.3f, 0.7f, 0}, {1.9f, 1.9f, 0}, {2.6f, 2.1f, 0}};
-  const Curve handle = {{-1.3f, 1.75f, 0}, {-2.9f, 2.2f, 0}, {-2.5f, 0.7f, 0}, {-1.5f, 0.6f, 0}};
   SceneFile scene;
-  scene.meshes.push_back(make_body());
-  scene.meshes.push_back(make_lid());
-  scene.meshes.push_back(make_tube("teapot spout", spout, 0.45f, 0.14f, 80, 90));
-  scene.meshes.push_back(make_tube("teapot handle", handle, 0.15f, 0.15f, 100, 60));
+  scene.meshes.push_back(make_teapot());
   scene.meshes.push_back(make_tiers());
   scene.meshes.push_back(make_floor());
   scene.view = View{{3.2f, 4.2f, 7.5f}, {0.2f, 1.5f, 0.0f}, {0.0f, 1.0f, 0.0f}, 42.0f};

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "kiwami/commands.h"
+#include "kiwami/image.h"
+#include "kiwami/options.h"
+#include "kiwami/progress.h"
+#include "kiwami/renderer.h"
+#include "measure/camera.h"
+
+namespace kiwami::tools {
+namespace {
+
+struct RenderOptions {
+  std::string scene;
+  std::string output;
+  std::string mode = "path";
+  std::string size = "1024x768";
+  std::string eye;
+  std::string target;
+  std::string up;
+  double field_of_view = 0.0;  ///< 0: the view's own
+  uint32_t samples_per_pixel = 16;
+  uint32_t bounces = 4;
+  TraceOptions trace;
+};
+
+RenderMode parse_mode(const std::string& name) {
+  if (name == "normals") return RenderMode::kNormals;
+  if (name == "ao") return RenderMode::kAmbientOcclusion;
+  if (name == "path") return RenderMode::kPath;
+  throw UsageError("--mode is '" + name + "', expected normals, ao or path");
+}
+
+/// The view of the options; what they leave out comes from the scene.
+View choose_view(const RenderOptions& options, const SceneFile& file, const Box& box,
+                 const Size& size) {
+  const Vec3 up = options.up.empty() ? file.view ? file.view->up : Vec3{0, 1, 0}
+                                     : parse_vector("--up", options.up);
+  if (!(length(up) > 0.0f)) throw UsageError("--up is '" + options.up + "', which has no length");
+  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  const float angle = options.field_of_view > 0.0 ? static_cast<float>(options.field_of_view)
+                      : file.view                 ? file.view->vertical_field_of_view
+                                                  : kDefaultFieldOfView;
+  View view = file.view ? *file.view : fit_view(box, up, angle, aspect);
+  view.up = up;
+  view.vertical_field_of_view = angle;
+  if (!options.eye.empty()) view.eye = parse_vector("--eye", options.eye);
+  if (!options.target.empty()) view.target = parse_vector("--target", options.target);
+  const Vec3 sight = view.target - view.eye;
+  if (!(length(sight) > 0.0f) || !std::isfinite(length(sight))) {
+    throw UsageError("the eye and the target are the same point, or too far apart");
+  }
+  if (!(length(cross(normalize(sight), normalize(up))) > 1e-6f)) {
+    throw UsageError("the camera looks along its up vector");
+  }
+  return view;
+}
+
+/// Syntax errors of options that need the scene are found before the scene is read.
+void check_options(const RenderOptions& options) {
+  parse_mode(options.mode);
+  parse_size("--size", options.size);
+  isa_of_name(options.trace.isa);
+  if (!options.eye.empty()) parse_vector("--eye", options.eye);
+  if (!options.target.empty()) parse_vector("--target", options.target);
+  if (!options.up.empty()) parse_vector("--up", options.up);
+  check_image_path("--output", options.output);
+}
+
+void print_build(const SceneFile& file, const Device& device, const kiwami_scene_info& info) {
+  std::printf("scene   %s triangles in %s meshes\n", grouped(file.triangle_count()).c_str(),
+              grouped(file.meshes.size()).c_str());
+  if (info.skipped_count > 0) {
+    std::printf("note    %s triangles are skipped: a vertex is NaN, infinite or beyond 2^60\n",
+                grouped(info.skipped_count).c_str());
+  }
+  std::printf("device  %s, %u wide, %u threads\n", kiwami_isa_name(device.info().isa),
+              info.bvh_width, device.info().thread_count);
+  std::printf("build   %.1f ms, %.1f bytes per triangle, nodes %.1f %% and leaves %.1f %% full\n",
+              info.build_seconds * 1e3,
+              static_cast<double>(info.total_bytes) /
+                  static_cast<double>(std::max<uint64_t>(info.triangle_count, 1)),
+              info.node_fill * 100.0, info.leaf_fill * 100.0);
+}
+
+void run_render(const RenderOptions& options) {
+  check_options(options);
+  const Size size = parse_size("--size", options.size);
+  const Device device = options.trace.make_device();
+  const SceneFile file = flatten(load_scene(options.scene));
+  const BuiltScene scene(device, file, options.trace.build_options());
+  print_build(file, device, scene.info());
+
+  const Box box = bounds_of(scene.info());
+  const View view = choose_view(options, file, box, size);
+  RenderSettings settings;
+  settings.mode = parse_mode(options.mode);
+  settings.samples_per_pixel = options.samples_per_pixel;
+  settings.bounces = options.bounces;
+  settings.occlusion_radius = 0.1f * box.diagonal();
+  settings.up = view.up;
+  settings.threads = device.info().thread_count;
+  Tracing tracing(scene);
+  const auto start = std::chrono::steady_clock::now();
+  Image image;
+  {
+    Progress bar(uint64_t{size.width} * size.height * options.samples_per_pixel);
+    image = render(tracing, Camera(view, size.width, size.height), settings,
+                   [&](uint64_t samples, uint64_t rays) { bar.update(samples, rays); });
+  }
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  write_image(image, options.output);
+  std::printf("render  %.2f s, %s rays, %.2f Mrays/s while tracing\n", spent.count(),
+              grouped(tracing.ray_count()).c_str(),
+              static_cast<double>(tracing.ray_count()) / tracing.seconds() * 1e-6);
+  std::printf("wrote   %s\n", options.output.c_str());
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("render", "Render a picture of a scene");
+  const auto options = std::make_shared<RenderOptions>();
+  command
+      ->add_option("SCENE", options->scene,
+                   "An .obj, .tri or .ins file, each also with .gz, or one of " +
+                       std::string("stadium, sphere:LEVEL, terrain:N, soup:N:SEED"))
+      ->required();
+  command->add_option("-o,--output", options->output, "The picture: a .png or .ppm file")
+      ->required();
+  command->add_option("--mode", options->mode, "normals, ao (ambient occlusion) or path")
+      ->capture_default_str();
+  command->add_option("--size", options->size, "Width and height of the picture")
+      ->capture_default_str();
+  command->add_option("--spp", options->samples_per_pixel, "Samples a pixel")
+      ->check(whole_number(1, 65536))
+      ->capture_default_str();
+  command->add_option("--bounces", options->bounces, "Bounces of a path")
+      ->check(whole_number(1, 8))
+      ->capture_default_str();
+  command->add_option("--eye", options->eye, "Where the camera stands: x,y,z");
+  command->add_option("--target", options->target, "What it looks at: x,y,z");
+  command->add_option("--up", options->up, "Which way is up: x,y,z");
+  command->add_option("--fov", options->field_of_view, "Vertical field of view in degrees")
+      ->check(finite_number(1, 170));
+  add_trace_options(*command, options->trace);
+  command->callback([options, &exit_code] {
+    run_render(*options);
+    exit_code = 0;
+  });
+}
+
+}  // namespace kiwami::tools

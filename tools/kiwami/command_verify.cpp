@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+
+#include "kiwami/commands.h"
+#include "kiwami/options.h"
+#include "kiwami/verifier.h"
+
+namespace kiwami::tools {
+namespace {
+
+struct VerifyOptions {
+  std::string scene;
+  uint64_t rays = 20000;
+  uint64_t seed = 1;
+};
+
+constexpr int kDifferenceFound = 1;
+
+int run_verify(const VerifyOptions& options) {
+  const SceneFile file = flatten(load_scene(options.scene));
+  std::printf("%s: %s triangles, seed %llu\n", options.scene.c_str(),
+              grouped(file.triangle_count()).c_str(),
+              static_cast<unsigned long long>(options.seed));
+  Verifier verifier(file, options.rays, options.seed);
+  const bool equal = verifier.run();
+  std::printf("\n%s\n", equal ? "verified" : "NOT VERIFIED");
+  return equal ? 0 : kDifferenceFound;
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "verify", "Compare every ISA, node width and thread count, bit for bit, and Embree");
+  const auto options = std::make_shared<VerifyOptions>();
+  command->add_option("SCENE", options->scene, "As for render")->required();
+  command->add_option("--rays", options->rays, "Rays of each kind")
+      ->check(whole_number(1, 100000000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of the random rays")
+      ->check(whole_number(0, UINT64_MAX))
+      ->capture_default_str();
+  command->footer("Exits with 1 at the first difference, after saying which ray it is.");
+  command->callback([options, &exit_code] { exit_code = run_verify(*options); });
+}
+
+}  // namespace kiwami::tools

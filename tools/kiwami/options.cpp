@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiwami/options.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <optional>
+
+namespace kiwami::tools {
+namespace {
+
+constexpr uint32_t kMaxPictureSide = 16384;
+
+/// The whole text as a number, or nothing.
+template <typename T>
+std::optional<T> parse_number(std::string_view text) {
+  T number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+CLI::Validator whole_number(uint64_t lowest, uint64_t highest) {
+  const auto check = [=](std::string& text) -> std::string {
+    const std::optional<uint64_t> number = parse_number<uint64_t>(text);
+    if (number && *number >= lowest && *number <= highest) return {};
+    return "it is '" + text + "', expected a whole number of " + std::to_string(lowest) + " to " +
+           std::to_string(highest);
+  };
+  return CLI::Validator(check, std::to_string(lowest) + " to " + std::to_string(highest));
+}
+
+CLI::Validator finite_number(double lowest, double highest) {
+  const std::string bounds = format("%g to %g", lowest, highest);
+  const auto check = [=](std::string& text) -> std::string {
+    const std::optional<double> number = parse_number<double>(text);
+    // Written so that NaN is refused.
+    if (number && *number >= lowest && *number <= highest) return {};
+    return "it is '" + text + "', expected a number of " + bounds;
+  };
+  return CLI::Validator(check, bounds);
+}
+
+void add_trace_options(CLI::App& command, TraceOptions& options) {
+  command.add_option("--isa", options.isa, "Instruction set: auto, scalar, sse, avx2 or avx512")
+      ->capture_default_str();
+  const auto check_width = [](std::string& text) -> std::string {
+    if (text == "0" || text == "4" || text == "8" || text == "16") return {};
+    return "it is '" + text + "', expected 4, 8, 16, or 0 for the device's default";
+  };
+  command
+      .add_option("--bvh-width", options.bvh_width,
+                  "Children a node: 4, 8, 16; 0: the default of the device")
+      ->check(CLI::Validator(check_width, ""))
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "Threads; 0: one per processor")
+      ->check(whole_number(0, 1024))
+      ->capture_default_str();
+}
+
+Vec3 parse_vector(const std::string& option, const std::string& text) {
+  float numbers[3];
+  std::string_view rest = text;
+  for (int i = 0; i < 3; ++i) {
+    const size_t end = i < 2 ? rest.find(',') : rest.size();
+    const std::optional<float> number = parse_number<float>(rest.substr(0, end));
+    if (end == std::string_view::npos || !number || !(std::abs(*number) <= KIWAMI_MAX_COORDINATE)) {
+      throw UsageError(option + " is '" + text +
+                       "', expected three numbers within 2^60 as in 1,2.5,-3");
+    }
+    numbers[i] = *number;
+    if (i < 2) rest.remove_prefix(end + 1);
+  }
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+Size parse_size(const std::string& option, const std::string& text) {
+  const size_t cross = text.find('x');
+  const std::string_view whole = text;
+  const auto width = parse_number<uint32_t>(whole.substr(0, cross));
+  const auto height =
+      cross == std::string::npos ? std::nullopt : parse_number<uint32_t>(whole.substr(cross + 1));
+  if (!width || !height || *width < 1 || *height < 1 || *width > kMaxPictureSide ||
+      *height > kMaxPictureSide) {
+    throw UsageError(option + " is '" + text + "', expected WIDTHxHEIGHT, each 1 to " +
+                     std::to_string(kMaxPictureSide));
+  }
+  return {*width, *height};
+}
+
+std::string grouped(uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+  return digits;
+}
+
+std::string format(const char* pattern, ...) {
+  va_list arguments;
+  va_start(arguments, pattern);
+  va_list copy;
+  va_copy(copy, arguments);
+  std::string text(static_cast<size_t>(std::vsnprintf(nullptr, 0, pattern, copy)), '\0');
+  va_end(copy);
+  std::vsnprintf(text.data(), text.size() + 1, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+
+}  // namespace kiwami::tools

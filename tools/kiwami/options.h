@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include "measure/library.h"
+#include "scene/vector.h"
+
+namespace kiwami::tools {
+
+/// A command line that cannot be obeyed: one sentence without a full stop.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Which kernels trace, and how.
+struct TraceOptions {
+  std::string isa = "auto";
+  uint32_t bvh_width = 0;
+  uint32_t threads = 0;
+
+  Device make_device() const { return Device(isa_of_name(isa), threads); }
+  BuildOptions build_options() const { return {bvh_width, true}; }
+};
+
+/// Adds --isa, --bvh-width and --threads.
+void add_trace_options(CLI::App& command, TraceOptions& options);
+
+/// Accept a whole number, or a finite number, within bounds; a sentence otherwise.
+CLI::Validator whole_number(uint64_t lowest, uint64_t highest);
+CLI::Validator finite_number(double lowest, double highest);
+
+/// "1,2.5,-3" as a vector of finite numbers; `option` is named by the error.
+Vec3 parse_vector(const std::string& option, const std::string& text);
+
+/// "640x480".
+struct Size {
+  uint32_t width;
+  uint32_t height;
+};
+Size parse_size(const std::string& option, const std::string& text);
+
+/// "1,234,567".
+std::string grouped(uint64_t number);
+
+/// As printf, into a string.
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+}  // namespace kiwami::tools

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "measure/double_judge.h"
+#include "measure/library.h"
+#include "measure/ray_sets.h"
+
+namespace kiwami::tools {
+
+/// What a tracer answered to all ray sets.
+struct Answers {
+  std::vector<std::vector<kiwami_hit>> hits;
+  std::vector<std::vector<uint8_t>> occluded;
+};
+
+/// A device and a build that must answer as the reference does.
+struct Contender {
+  uint32_t isa;
+  uint32_t bvh_width;
+  bool merge_leaves;
+  uint32_t threads;
+};
+
+/// Compares every kernel that can run here, bit for bit, with the scalar kernels of width 4 on one
+/// thread, and those with Embree.
+class Verifier {
+ public:
+  /// The scene must have no instances, and outlive the verifier.
+  Verifier(const SceneFile& scene, size_t rays_per_set, uint64_t seed);
+
+  /// Prints a table and returns true; or prints the first difference and returns false.
+  bool run();
+
+ private:
+  bool run_contender(const Contender& contender);
+  bool compare(const Answers& answers, const std::string& name) const;
+  bool compare_with_embree() const;
+
+  const SceneFile& scene_;
+  Device device_;
+  BuiltScene reference_;
+  std::vector<RaySet> sets_;
+  Answers expected_;
+};
+
+}  // namespace kiwami::tools
