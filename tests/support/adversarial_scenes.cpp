@@ -40,7 +40,8 @@ void add_soup(Mesh& mesh, Random& random, uint32_t count, float size, float exte
 
 Mesh soup(Random& random) {
   Mesh mesh;
-  add_soup(mesh, random, some_count(random), 1.0f, random.power_of_two(-6, 0));
+  const uint32_t count = some_count(random);
+  add_soup(mesh, random, count, 1.0f, random.power_of_two(-6, 0));
   return mesh;
 }
 
@@ -48,9 +49,8 @@ Mesh slivers(Random& random) {
   Mesh mesh;
   for (uint32_t i = some_count(random); i > 0; --i) {
     const Point a = random_point(random, 1.0f), b = random_point(random, 1.0f);
-    const Point c = (random.one_in(2) ? a : (a + b) * 0.5f) +
-                    random_point(random, random.power_of_two(-26, -10));
-    mesh.add(a, b, c);
+    const Point near_c = random.one_in(2) ? a : (a + b) * 0.5f;
+    mesh.add(a, b, near_c + random_point(random, random.power_of_two(-26, -10)));
   }
   return mesh;
 }

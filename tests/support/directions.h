@@ -17,7 +17,7 @@ inline Point axis_direction(Random& random) {
   return direction;
 }
 
-/// Components that are often equal in size, zero or far apart.
+/// Components that are often equal in size, zero or far apart; the greatest is about 1.
 inline Point odd_direction(Random& random) {
   const auto component = [&]() -> float {
     switch (random.below(6)) {
@@ -29,13 +29,19 @@ inline Point odd_direction(Random& random) {
         return 1.0f;
       case 3:
         return -1.0f;
-      case 4:
-        return std::ldexp(random.symmetric(), random.between(-140, -20));
+      case 4: {
+        const float mantissa = random.symmetric();
+        return std::ldexp(mantissa, random.between(-140, -20));
+      }
       default:
         return random.symmetric();
     }
   };
-  return {component(), component(), component()};
+  Point direction{component(), component(), component()};
+  const bool is_tiny = std::fabs(direction.x) < 0x1p-20f && std::fabs(direction.y) < 0x1p-20f &&
+                       std::fabs(direction.z) < 0x1p-20f;
+  if (is_tiny) direction[random.between(0, 2)] = 1.0f;
+  return direction;
 }
 
 inline Point random_direction(Random& random) {

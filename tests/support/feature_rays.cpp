@@ -68,10 +68,12 @@ kiwami_ray FeatureRayGenerator::line() {
       from = feature();
       direction = axis_direction(random_);
       break;
-    case 1:
+    case 1: {
       direction = along;
-      from = corner[random_.below(3)] - along * static_cast<float>(random_.between(0, 8));
+      const Point start = corner[random_.below(3)];
+      from = start - along * static_cast<float>(random_.between(0, 8));
       break;
+    }
     case 2:
       from = outside_point();
       direction = feature() - from;

@@ -111,8 +111,9 @@ Point RayGenerator::origin() {
     case 4:
       return {random_.one_in(2) ? 0.0f : -0.0f, 0.0f, 0.0f};
     case 5: {
-      const Point p = random_point() * random_.power_of_two(1, 24);
-      return is_usable(p) ? p : random_point();
+      const Point p = random_point();
+      const Point far = p * random_.power_of_two(1, 24);
+      return is_usable(far) ? far : p;
     }
     default:
       return random_point();
@@ -147,13 +148,16 @@ Point RayGenerator::direction_from(Point& origin) {
     }
     case 6: {
       const Point direction = odd_direction(random_);
-      origin = some_vertex() - direction * random_.power_of_two(0, 6);
+      const Point target = some_vertex();
+      origin = target - direction * random_.power_of_two(0, 6);
       return direction;
     }
     case 7:
       return odd_direction(random_);
-    case 8:
-      return some_vertex() - some_vertex();
+    case 8: {
+      const Point from = some_vertex();
+      return some_vertex() - from;
+    }
     default:
       return random_direction(random_);
   }
