@@ -111,6 +111,7 @@ bool PlainOracle::crosses(const Frame& frame, const kiwami_ray& ray, const Trian
   crossing.t = static_cast<float>(scaled_t * frame.scale);
   crossing.u = static_cast<float>(v / sum);
   crossing.v = static_cast<float>(w / sum);
+  if (!std::isfinite(crossing.t)) return false;
   if (!(ray.tmin <= crossing.t && crossing.t <= ray.tmax)) return false;
   if (has_positive && (ray.flags & KIWAMI_RAY_CULL_FRONT_FACES)) return false;
   if (has_negative && (ray.flags & KIWAMI_RAY_CULL_BACK_FACES)) return false;
