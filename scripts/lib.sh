@@ -70,6 +70,13 @@ install_packages() {
       apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
+# prepare_emulator: fetches the kernel of the emulated CPUs, unless that was done before.
+prepare_emulator() {
+  local emulator=$project/tests/emulator/run-on-emulated-cpu
+  "$emulator" --missing >/dev/null || return 0
+  "$emulator" --prepare || { as_root apt-get update -qq && "$emulator" --prepare; }
+}
+
 # now_ms: a clock in milliseconds.
 now_ms() {
   echo $(($(date +%s%N) / 1000000))
