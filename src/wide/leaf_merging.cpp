@@ -10,17 +10,24 @@ uint16_t mask_of(uint32_t first, uint32_t size) {
   return static_cast<uint16_t>(((1u << size) - 1) << first);
 }
 
+/// Where a node went that was joined with another one: its slots moved up by shift.
+struct Redirection {
+  uint32_t node, shift;
+};
+
 /// The nodes that still take owners.
 class Ring {
  public:
   Ring(uint32_t width, uint32_t capacity, uint32_t smallest, Memory& memory)
-      : width_(width), smallest_(smallest), entries_(memory, std::max(capacity, 1u)) {}
+      : width_(width),
+        smallest_(smallest),
+        entries_(memory, std::max(capacity, 1u)),
+        redirections_(memory) {}
 
-  /// The node for an owner, and its first slot there.
+  /// A node for an owner, and its first slot there: both may move while the ring is in use.
   SharedPlace place(uint32_t size) {
-    if (size + smallest_ > width_) return {opened_++, mask_of(0, size), 0};
-    size_t chosen = find_exact(size);
-    if (chosen == size_) chosen = size_ < entries_.size() ? open() : find_when_full(size);
+    if (size + smallest_ > width_) return {open_node(), mask_of(0, size), 0};
+    const size_t chosen = choose(size);
     Entry& entry = entries_[chosen];
     const SharedPlace place = {entry.node, mask_of(entry.used, size),
                                static_cast<uint16_t>(entry.used)};
@@ -29,35 +36,92 @@ class Ring {
     return place;
   }
 
-  uint32_t opened() const { return opened_; }
+  /// Joins what is still open, as far as it fits.
+  void finish() {
+    while (join_pair(true) || join_pair(false)) continue;
+  }
+
+  /// Where a place has moved to.
+  SharedPlace settle(SharedPlace place) const {
+    while (redirections_[place.index].node != place.index) {
+      const Redirection& redirection = redirections_[place.index];
+      place = {redirection.node, static_cast<uint16_t>(place.mask << redirection.shift),
+               static_cast<uint16_t>(place.first + redirection.shift)};
+    }
+    return place;
+  }
+
+  uint32_t opened() const { return static_cast<uint32_t>(redirections_.size()); }
 
  private:
   struct Entry {
     uint32_t node, used;
   };
 
-  /// size_ where there is none. The oldest wins: its owners are the farthest behind.
+  size_t choose(uint32_t size) {
+    const size_t exact = find_exact(size);
+    if (exact != size_) return exact;
+    if (size_ < entries_.size() || join_pair(true)) return open_entry();
+    const size_t tightest = find_tightest(size);
+    if (tightest != size_) return tightest;
+    if (!join_pair(false)) close(find_fullest());
+    return open_entry();
+  }
+
+  /// The oldest entry that the owner fills; size_ where there is none.
   size_t find_exact(uint32_t size) const {
     size_t i = 0;
     while (i < size_ && entries_[i].used + size != width_) ++i;
     return i;
   }
 
-  size_t find_when_full(uint32_t size) {
-    size_t tightest = size_, fullest = 0;
+  /// The fullest entry that has room for the owner and then for another; size_ where there is none.
+  size_t find_tightest(uint32_t size) const {
+    size_t tightest = size_;
     for (size_t i = 0; i < size_; ++i) {
-      const uint32_t used = entries_[i].used;
-      const bool fits = used + size + smallest_ <= width_;
-      if (fits && (tightest == size_ || used > entries_[tightest].used)) tightest = i;
-      if (used > entries_[fullest].used) fullest = i;
+      const bool fits = entries_[i].used + size + smallest_ <= width_;
+      if (fits && (tightest == size_ || entries_[i].used > entries_[tightest].used)) tightest = i;
     }
-    if (tightest != size_) return tightest;
-    close(fullest);
-    return open();
+    return tightest;
   }
 
-  size_t open() {
-    entries_[size_] = {opened_++, 0};
+  size_t find_fullest() const {
+    size_t fullest = 0;
+    for (size_t i = 1; i < size_; ++i) {
+      if (entries_[i].used > entries_[fullest].used) fullest = i;
+    }
+    return fullest;
+  }
+
+  /// Joins the two entries that together fill a node, or else the two that fill most of one.
+  bool join_pair(bool must_fill) {
+    size_t best_low = 0, best_high = 0;
+    uint32_t best_used = must_fill ? width_ - 1 : 0;
+    for (size_t high = 1; high < size_; ++high) {
+      for (size_t low = 0; low < high; ++low) {
+        const uint32_t used = entries_[low].used + entries_[high].used;
+        if (used > width_ || used <= best_used) continue;
+        best_used = used;
+        best_low = low;
+        best_high = high;
+      }
+    }
+    if (best_high == 0) return false;
+    redirections_[entries_[best_high].node] = {entries_[best_low].node, entries_[best_low].used};
+    entries_[best_low].used = best_used;
+    close(best_high);
+    if (best_used == width_) close(best_low);
+    return true;
+  }
+
+  uint32_t open_node() {
+    const uint32_t node = opened();
+    redirections_.push_back({node, 0});
+    return node;
+  }
+
+  size_t open_entry() {
+    entries_[size_] = {open_node(), 0};
     return size_++;
   }
 
@@ -67,23 +131,22 @@ class Ring {
   }
 
   uint32_t width_;
-  uint32_t smallest_;  ///< fewer free slots than this are of use to nobody
-  uint32_t opened_ = 0;
+  uint32_t smallest_;     ///< fewer free slots than this are of use to nobody
   Array<Entry> entries_;  ///< by age
   size_t size_ = 0;
+  GrowingArray<Redirection> redirections_;  ///< of every node that was opened
 };
 
-/// Replaces numbers in the order of first owners by numbers in the order of last owners.
-void renumber_by_last_owner(SharedPlaces& shared, Memory& memory) {
-  Array<uint32_t> last_owner(memory, shared.count);
-  Array<uint32_t> number(memory, shared.count);
+/// Gives the nodes that are left their final numbers, in the order of their last owners.
+void number_by_last_owner(uint32_t opened, SharedPlaces& shared, Memory& memory) {
+  Array<uint32_t> last_owner(memory, opened);
+  Array<uint32_t> number(memory, opened);
   for (size_t i = 0; i < shared.places.size(); ++i) {
     last_owner[shared.places[i].index] = static_cast<uint32_t>(i);
   }
-  uint32_t next = 0;
   for (size_t i = 0; i < shared.places.size(); ++i) {
     const uint32_t index = shared.places[i].index;
-    if (last_owner[index] == i) number[index] = next++;
+    if (last_owner[index] == i) number[index] = shared.count++;
   }
   for (SharedPlace& place : shared.places) place.index = number[place.index];
 }
@@ -106,8 +169,9 @@ SharedPlaces place_shared(const Array<uint8_t>& sizes, uint32_t width, uint32_t 
   Ring ring(width, ring_size, smallest, memory);
   SharedPlaces shared{Array<SharedPlace>(memory, sizes.size()), 0};
   for (size_t i = 0; i < sizes.size(); ++i) shared.places[i] = ring.place(sizes[i]);
-  shared.count = ring.opened();
-  renumber_by_last_owner(shared, memory);
+  ring.finish();
+  for (SharedPlace& place : shared.places) place = ring.settle(place);
+  number_by_last_owner(ring.opened(), shared, memory);
   return shared;
 }
 
