@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kiwami/path_tracer.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "kiwami/parallel_ranges.h"
@@ -12,8 +13,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr Vec3 kSunRadiance = {2.4f, 2.2f,
                                1.9f};  // already divided by pi and times its solid angle
-constexpr Vec3 kZenith = {0.35f, 0.55f, 0.95f};
-constexpr Vec3 kHorizon = {0.95f, 0.95f, 0.95f};
+constexpr Vec3 kZenith = {0.20f, 0.32f, 0.58f};
+constexpr Vec3 kHorizon = {0.55f, 0.60f, 0.66f};
 
 Vec3 times(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
@@ -37,9 +38,9 @@ struct Sky {
 /// Meshes are told apart by pale colours of their own.
 Vec3 albedo_of(uint32_t geometry_id) {
   Random random(geometry_id, 77);
-  const float red = random.uniform(0.55f, 0.8f);
-  const float green = random.uniform(0.55f, 0.8f);
-  const float blue = random.uniform(0.55f, 0.8f);
+  const float red = random.uniform(0.58f, 0.74f);
+  const float green = random.uniform(0.58f, 0.74f);
+  const float blue = random.uniform(0.58f, 0.74f);
   return {red, green, blue};
 }
 
@@ -115,8 +116,7 @@ class Wavefront {
     for (size_t k = 0; k < active_.size(); ++k) {
       if (occluded_[k] != 0 || !(sun_cosines_[k] > 0.0f)) continue;
       const size_t i = active_[k];
-      batch_.colors[i] =
-          batch_.colors[i] + times(throughput_[i], kSunRadiance) * (0.5f * sun_cosines_[k]);
+      batch_.colors[i] = batch_.colors[i] + times(throughput_[i], kSunRadiance) * sun_cosines_[k];
     }
   }
 

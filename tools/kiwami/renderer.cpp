@@ -95,6 +95,21 @@ uint8_t to_byte(float linear) {
   return static_cast<uint8_t>(std::sqrt(clamped) * 255.0f + 0.5f);
 }
 
+/// Compresses light of any strength into 0 to 1; 2 becomes white (E. Reinhard, M. Stark, P.
+/// Shirley, J. Ferwerda, "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002,
+/// equation 4).
+float compress(float linear) { return linear * (1.0f + linear * 0.25f) / (1.0f + linear); }
+
+void write_pixels(const std::vector<Vec3>& sums, const RenderSettings& settings, uint8_t* bytes) {
+  const float scale = 1.0f / static_cast<float>(settings.samples_per_pixel);
+  for (const Vec3& sum : sums) {
+    for (int channel = 0; channel < 3; ++channel) {
+      const float linear = sum[channel] * scale;
+      *bytes++ = to_byte(settings.mode == RenderMode::kPath ? compress(linear) : linear);
+    }
+  }
+}
+
 }  // namespace
 
 void Tracing::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) {
@@ -127,13 +142,7 @@ Image render(Tracing& tracing, const Camera& camera, const RenderSettings& setti
       samples_done += count;
       progress(samples_done, tracing.ray_count());
     }
-    const float scale = 1.0f / static_cast<float>(settings.samples_per_pixel);
-    for (size_t i = 0; i < count; ++i) {
-      for (int channel = 0; channel < 3; ++channel) {
-        image.pixels[(first + i) * 3 + static_cast<size_t>(channel)] =
-            to_byte(sums[i][channel] * scale);
-      }
-    }
+    write_pixels(sums, settings, &image.pixels[first * 3]);
   }
   return image;
 }

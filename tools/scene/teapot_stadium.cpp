@@ -180,7 +180,7 @@ SceneFile make_teapot_stadium() {
   scene.meshes.push_back(make_teapot());
   scene.meshes.push_back(make_tiers());
   scene.meshes.push_back(make_floor());
-  scene.view = View{{3.2f, 4.2f, 7.5f}, {0.2f, 1.5f, 0.0f}, {0.0f, 1.0f, 0.0f}, 42.0f};
+  scene.view = View{{3.4f, 2.9f, 8.4f}, {0.15f, 1.75f, 0.0f}, {0.0f, 1.0f, 0.0f}, 40.0f};
   return scene;
 }
 
