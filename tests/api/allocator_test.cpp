@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// The caller's allocator: everything comes from it and goes back, and every failure is survived.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "api/api_support.h"
+
+namespace kiwami_api_tests {
+namespace {
+
+/// Makes a device, two meshes and a scene, commits twice and releases all. Returns the first error.
+kiwami_result run_life(CountingAllocator& allocator, const Triangles& triangles) {
+  kiwami_device_desc device_desc = default_device();
+  device_desc.thread_count = 1;  // so that the number of an allocation is the same in each run
+  allocator.install(device_desc);
+  kiwami_device* device = nullptr;
+  kiwami_geometry* mesh = nullptr;
+  kiwami_scene* scene = nullptr;
+  const kiwami_triangle_mesh_desc mesh_desc = triangles.desc();
+  kiwami_result result = kiwami_device_create(&device_desc, &device);
+  if (result == KIWAMI_OK) result = kiwami_triangle_mesh_create(device, &mesh_desc, &mesh);
+  if (result == KIWAMI_OK) result = kiwami_scene_create(device, &scene);
+  if (result == KIWAMI_OK) result = kiwami_scene_attach(scene, mesh, nullptr);
+  if (result == KIWAMI_OK) result = kiwami_scene_commit(scene);
+  if (result == KIWAMI_OK) result = kiwami_scene_validate(scene);
+  if (result == KIWAMI_OK) result = kiwami_scene_attach(scene, mesh, nullptr);
+  if (result == KIWAMI_OK) result = kiwami_scene_commit(scene);
+  kiwami_scene_release(scene);
+  kiwami_geometry_release(mesh);
+  kiwami_device_release(device);
+  return result;
+}
+
+TEST(Allocator, GetsEveryByteBackInTheSizeItGave) {
+  CountingAllocator allocator;
+  ASSERT_EQ(run_life(allocator, random_triangles(2000, 4)), KIWAMI_OK) << last_error();
+  EXPECT_GT(allocator.calls, 10u);
+  EXPECT_EQ(allocator.live_bytes, 0u);
+  EXPECT_EQ(allocator.live_blocks, 0u);
+  EXPECT_EQ(allocator.mismatches, 0u);
+}
+
+TEST(Allocator, EveryFailureIsAnErrorAndLeaksNothing) {
+  const Triangles triangles = random_triangles(500, 4);
+  CountingAllocator whole;
+  ASSERT_EQ(run_life(whole, triangles), KIWAMI_OK) << last_error();
+  for (size_t failure = 0; failure < whole.calls; ++failure) {
+    CountingAllocator allocator;
+    allocator.first_failure = failure;
+    ASSERT_EQ(run_life(allocator, triangles), KIWAMI_ERROR_OUT_OF_MEMORY) << failure;
+    EXPECT_EQ(last_error().rfind("allocation of ", 0), 0u) << last_error();
+    EXPECT_NE(last_error().find(" bytes "), std::string::npos) << last_error();
+    EXPECT_EQ(allocator.live_bytes, 0u) << failure;
+    EXPECT_EQ(allocator.live_blocks, 0u) << failure;
+    EXPECT_EQ(allocator.mismatches, 0u) << failure;
+  }
+}
+
+TEST(Allocator, FailuresOnManyThreadsLeakNothing) {
+  const Triangles triangles = random_triangles(30000, 4);
+  CountingAllocator allocator;
+  kiwami_device_desc desc = default_device();
+  ThreadRunner runner;
+  runner.threads = 4;
+  runner.install(desc, 4);
+  allocator.install(desc);
+  {
+    const Device device = make_device(desc);
+    const Scene scene = make_scene(device, make_mesh(device, triangles.desc()));
+    const kiwami_ray ray = random_rays(1, 4)[0];
+    const kiwami_hit before = closest_hit(scene, ray);
+    const size_t live = allocator.live_bytes;
+    size_t failures = 0;
+    for (size_t later = 0;; ++later) {
+      allocator.first_failure = allocator.calls + later;
+      const kiwami_result result = kiwami_scene_commit(scene.get());
+      if (result == KIWAMI_OK) break;
+      ASSERT_EQ(result, KIWAMI_ERROR_OUT_OF_MEMORY) << last_error();
+      ASSERT_EQ(allocator.live_bytes, live) << "after failure " << later;
+      ++failures;
+    }
+    EXPECT_GT(failures, 5u);
+    EXPECT_TRUE(are_equal({closest_hit(scene, ray)}, {before}));
+  }
+  EXPECT_EQ(allocator.live_bytes, 0u);
+  EXPECT_EQ(allocator.mismatches, 0u);
+}
+
+TEST(Allocator, MisalignedBlocksAreRefused) {
+  CountingAllocator allocator;
+  allocator.misplacement = 1;
+  kiwami_device_desc desc = default_device();
+  allocator.install(desc);
+  kiwami_device* device = nullptr;
+  EXPECT_EQ(kiwami_device_create(&desc, &device), KIWAMI_ERROR_CALLBACK);
+  EXPECT_EQ(last_error().rfind("allocate returned ", 0), 0u) << last_error();
+  EXPECT_EQ(allocator.live_blocks, 0u);
+}
+
+}  // namespace
+}  // namespace kiwami_api_tests

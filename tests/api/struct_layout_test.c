@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The layout of every public struct is frozen: other languages have it written down. */
+#include <kiwami/kiwami.h>
+#include <stdio.h>
+
+static int failures = 0;
+
+static void expect(const char* what, size_t actual, size_t expected) {
+  if (actual == expected) return;
+  printf("%s is %lu, expected %lu\n", what, (unsigned long)actual, (unsigned long)expected);
+  ++failures;
+}
+
+#define SIZE(type, expected) expect("sizeof " #type, sizeof(type), expected)
+#define FIELD(type, field, expected) expect(#type "." #field, offsetof(type, field), expected)
+
+static void check_ray_and_hit(void) {
+  SIZE(kiwami_ray, 48);
+  FIELD(kiwami_ray, origin_x, 0);
+  FIELD(kiwami_ray, origin_y, 4);
+  FIELD(kiwami_ray, origin_z, 8);
+  FIELD(kiwami_ray, tmin, 12);
+  FIELD(kiwami_ray, direction_x, 16);
+  FIELD(kiwami_ray, direction_y, 20);
+  FIELD(kiwami_ray, direction_z, 24);
+  FIELD(kiwami_ray, tmax, 28);
+  FIELD(kiwami_ray, time, 32);
+  FIELD(kiwami_ray, mask, 36);
+  FIELD(kiwami_ray, flags, 40);
+  FIELD(kiwami_ray, id, 44);
+
+  SIZE(kiwami_hit, 36);
+  FIELD(kiwami_hit, t, 0);
+  FIELD(kiwami_hit, u, 4);
+  FIELD(kiwami_hit, v, 8);
+  FIELD(kiwami_hit, normal_x, 12);
+  FIELD(kiwami_hit, normal_y, 16);
+  FIELD(kiwami_hit, normal_z, 20);
+  FIELD(kiwami_hit, primitive_id, 24);
+  FIELD(kiwami_hit, geometry_id, 28);
+  FIELD(kiwami_hit, instance_id, 32);
+}
+
+/* The structs that hold pointers: their layout is that of 64-bit machines. */
+static void check_device_and_mesh(void) {
+  SIZE(kiwami_device_desc, 80);
+  FIELD(kiwami_device_desc, struct_size, 0);
+  FIELD(kiwami_device_desc, isa, 4);
+  FIELD(kiwami_device_desc, thread_count, 8);
+  FIELD(kiwami_device_desc, flags, 12);
+  FIELD(kiwami_device_desc, runner, 16);
+  FIELD(kiwami_device_desc, runner_user, 24);
+  FIELD(kiwami_device_desc, runner_width, 32);
+  FIELD(kiwami_device_desc, reserved, 36);
+  FIELD(kiwami_device_desc, allocate, 40);
+  FIELD(kiwami_device_desc, deallocate, 48);
+  FIELD(kiwami_device_desc, allocator_user, 56);
+  FIELD(kiwami_device_desc, log, 64);
+  FIELD(kiwami_device_desc, log_user, 72);
+
+  SIZE(kiwami_triangle_mesh_desc, 80);
+  FIELD(kiwami_triangle_mesh_desc, struct_size, 0);
+  FIELD(kiwami_triangle_mesh_desc, flags, 4);
+  FIELD(kiwami_triangle_mesh_desc, vertices, 8);
+  FIELD(kiwami_triangle_mesh_desc, vertex_offset, 16);
+  FIELD(kiwami_triangle_mesh_desc, vertex_stride, 24);
+  FIELD(kiwami_triangle_mesh_desc, vertex_count, 32);
+  FIELD(kiwami_triangle_mesh_desc, indices, 40);
+  FIELD(kiwami_triangle_mesh_desc, index_offset, 48);
+  FIELD(kiwami_triangle_mesh_desc, index_stride, 56);
+  FIELD(kiwami_triangle_mesh_desc, triangle_count, 64);
+  FIELD(kiwami_triangle_mesh_desc, mask, 72);
+  FIELD(kiwami_triangle_mesh_desc, reserved, 76);
+}
+
+static void check_fields(void) {
+  SIZE(kiwami_input_field, 16);
+  FIELD(kiwami_input_field, data, 0);
+  FIELD(kiwami_input_field, stride, 8);
+  SIZE(kiwami_output_field, 16);
+  FIELD(kiwami_output_field, data, 0);
+  FIELD(kiwami_output_field, stride, 8);
+
+  SIZE(kiwami_ray_fields, 184);
+  FIELD(kiwami_ray_fields, struct_size, 0);
+  FIELD(kiwami_ray_fields, reserved, 4);
+  FIELD(kiwami_ray_fields, origin_x, 8);
+  FIELD(kiwami_ray_fields, origin_y, 24);
+  FIELD(kiwami_ray_fields, origin_z, 40);
+  FIELD(kiwami_ray_fields, direction_x, 56);
+  FIELD(kiwami_ray_fields, direction_y, 72);
+  FIELD(kiwami_ray_fields, direction_z, 88);
+  FIELD(kiwami_ray_fields, tmin, 104);
+  FIELD(kiwami_ray_fields, tmax, 120);
+  FIELD(kiwami_ray_fields, time, 136);
+  FIELD(kiwami_ray_fields, mask, 152);
+  FIELD(kiwami_ray_fields, flags, 168);
+
+  SIZE(kiwami_hit_fields, 152);
+  FIELD(kiwami_hit_fields, struct_size, 0);
+  FIELD(kiwami_hit_fields, reserved, 4);
+  FIELD(kiwami_hit_fields, t, 8);
+  FIELD(kiwami_hit_fields, u, 24);
+  FIELD(kiwami_hit_fields, v, 40);
+  FIELD(kiwami_hit_fields, normal_x, 56);
+  FIELD(kiwami_hit_fields, normal_y, 72);
+  FIELD(kiwami_hit_fields, normal_z, 88);
+  FIELD(kiwami_hit_fields, primitive_id, 104);
+  FIELD(kiwami_hit_fields, geometry_id, 120);
+  FIELD(kiwami_hit_fields, instance_id, 136);
+}
+
+static void check_infos_and_query(void) {
+  SIZE(kiwami_device_info, 32);
+  FIELD(kiwami_device_info, struct_size, 0);
+  FIELD(kiwami_device_info, isa, 4);
+  FIELD(kiwami_device_info, isa_available, 8);
+  FIELD(kiwami_device_info, isa_built, 12);
+  FIELD(kiwami_device_info, native_widths, 16);
+  FIELD(kiwami_device_info, default_bvh_width, 20);
+  FIELD(kiwami_device_info, thread_count, 24);
+  FIELD(kiwami_device_info, reserved, 28);
+
+  SIZE(kiwami_scene_info, 136);
+  FIELD(kiwami_scene_info, struct_size, 0);
+  FIELD(kiwami_scene_info, bvh_width, 4);
+  FIELD(kiwami_scene_info, leaf_width, 8);
+  FIELD(kiwami_scene_info, bvh_depth, 12);
+  FIELD(kiwami_scene_info, triangle_count, 16);
+  FIELD(kiwami_scene_info, skipped_count, 24);
+  FIELD(kiwami_scene_info, node_count, 32);
+  FIELD(kiwami_scene_info, leaf_block_count, 40);
+  FIELD(kiwami_scene_info, node_bytes, 48);
+  FIELD(kiwami_scene_info, leaf_bytes, 56);
+  FIELD(kiwami_scene_info, total_bytes, 64);
+  FIELD(kiwami_scene_info, peak_build_bytes, 72);
+  FIELD(kiwami_scene_info, node_fill, 80);
+  FIELD(kiwami_scene_info, leaf_fill, 88);
+  FIELD(kiwami_scene_info, sah_cost, 96);
+  FIELD(kiwami_scene_info, build_seconds, 104);
+  FIELD(kiwami_scene_info, bounds_min, 112);
+  FIELD(kiwami_scene_info, bounds_max, 124);
+
+  SIZE(kiwami_query, 8);
+  FIELD(kiwami_query, struct_size, 0);
+  FIELD(kiwami_query, flags, 4);
+}
+
+static void check_numbers(void) {
+  expect("KIWAMI_ERROR_INVALID_ARGUMENT", (size_t)-KIWAMI_ERROR_INVALID_ARGUMENT, 1);
+  expect("KIWAMI_ERROR_INVALID_STATE", (size_t)-KIWAMI_ERROR_INVALID_STATE, 2);
+  expect("KIWAMI_ERROR_OUT_OF_MEMORY", (size_t)-KIWAMI_ERROR_OUT_OF_MEMORY, 3);
+  expect("KIWAMI_ERROR_UNSUPPORTED_ISA", (size_t)-KIWAMI_ERROR_UNSUPPORTED_ISA, 4);
+  expect("KIWAMI_ERROR_TOO_LARGE", (size_t)-KIWAMI_ERROR_TOO_LARGE, 5);
+  expect("KIWAMI_ERROR_CALLBACK", (size_t)-KIWAMI_ERROR_CALLBACK, 6);
+  expect("KIWAMI_ERROR_VALIDATION", (size_t)-KIWAMI_ERROR_VALIDATION, 7);
+  expect("KIWAMI_ERROR_INTERNAL", (size_t)-KIWAMI_ERROR_INTERNAL, 8);
+  expect("KIWAMI_ISA_AVX512", KIWAMI_ISA_AVX512, 4);
+  expect("KIWAMI_PARAMETER_BVH_WIDTH", KIWAMI_PARAMETER_BVH_WIDTH, 1);
+  expect("KIWAMI_PARAMETER_MERGE_LEAVES", KIWAMI_PARAMETER_MERGE_LEAVES, 2);
+  expect("KIWAMI_PARAMETER_MERGE_RING", KIWAMI_PARAMETER_MERGE_RING, 3);
+  expect("KIWAMI_PARAMETER_BIN_COUNT", KIWAMI_PARAMETER_BIN_COUNT, 4);
+  expect("KIWAMI_PARAMETER_MAX_LEAF_SIZE", KIWAMI_PARAMETER_MAX_LEAF_SIZE, 5);
+  expect("KIWAMI_PARAMETER_NODE_COST", KIWAMI_PARAMETER_NODE_COST, 6);
+  expect("KIWAMI_PARAMETER_LEAF_COST", KIWAMI_PARAMETER_LEAF_COST, 7);
+  expect("KIWAMI_PARAMETER_VALIDATE_BUILD", KIWAMI_PARAMETER_VALIDATE_BUILD, 8);
+}
+
+int main(void) {
+  check_ray_and_hit();
+  if (sizeof(void*) == 8) {
+    check_device_and_mesh();
+    check_fields();
+  }
+  check_infos_and_query();
+  check_numbers();
+  return failures != 0;
+}
