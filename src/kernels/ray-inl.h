@@ -27,30 +27,31 @@ constexpr float kLeastDirection = 0x1p-64f;
 /// Widens scaled distances that may have become denormal; nothing to any other.
 constexpr float kLeastDistance = 0x1p-140f;
 
-/// The scalar part of the set-up. Directions and distances are scaled by the power of two that
-/// brings the greatest direction component into [1, 2): so no product below can overflow, and, a
-/// power of two being exact, no result changes.
+/// The part of the set-up that no tree has a say in. Directions and distances are scaled by the
+/// power of two that brings the greatest direction component into [1, 2): so no product below can
+/// overflow, and, a power of two being exact, no result changes.
 struct ScalarRay {
-  float origin[3];
-  float direction[3];  ///< scaled
+  float origin[4];     ///< x, y, z; the fourth lane is not used
+  float direction[4];  ///< scaled; the same
+  float ratio[4];      ///< direction / greatest direction component
   float tmin, tmax;    ///< as given
   double scale;        ///< scaled distance = distance * scale
   double unscale;      ///< its inverse
   int kx, ky, kz;      ///< kz: axis of the greatest component; kx, ky: so that winding is kept
-  float shear_x, shear_y, shear_z;
+  float shear_z;       ///< 1 / direction[kz]; ratio[kx] and ratio[ky] are the other two shears
   uint32_t mask, flags;
 };
 
 /// False for a ray that can only miss: NaN, zero or infinite direction, origin out of range. Each
 /// comparison is false for NaN.
 inline bool is_traceable(const kiwami_ray& ray) {
-  const float x = __builtin_fabsf(ray.direction_x), y = __builtin_fabsf(ray.direction_y),
-              z = __builtin_fabsf(ray.direction_z);
-  const float infinity = __builtin_inff();
-  return __builtin_fabsf(ray.origin_x) <= KIWAMI_MAX_COORDINATE &&
-         __builtin_fabsf(ray.origin_y) <= KIWAMI_MAX_COORDINATE &&
-         __builtin_fabsf(ray.origin_z) <= KIWAMI_MAX_COORDINATE && x < infinity && y < infinity &&
-         z < infinity && (x > 0.0f || y > 0.0f || z > 0.0f) && ray.tmin <= ray.tmax;
+  constexpr uint32_t xyz = 7;
+  const vfloat<4> origin = absolute(load<4>(&ray.origin_x));
+  const vfloat<4> direction = absolute(load<4>(&ray.direction_x));
+  const bool is_in_range = (less_equal(origin, broadcast<4>(KIWAMI_MAX_COORDINATE)) & xyz) == xyz;
+  const bool is_finite = (less_equal(direction, broadcast<4>(__FLT_MAX__)) & xyz) == xyz;
+  const bool is_zero = (less_equal(direction, broadcast<4>(0.0f)) & xyz) == xyz;
+  return is_in_range && is_finite && !is_zero && ray.tmin <= ray.tmax;
 }
 
 inline double power_of_two(int exponent) {
@@ -68,26 +69,24 @@ inline int exponent_of(float value) {
 }
 
 inline void set_up_scalar(const kiwami_ray& ray, ScalarRay& out) {
-  out.origin[0] = ray.origin_x;
-  out.origin[1] = ray.origin_y;
-  out.origin[2] = ray.origin_z;
-  const float direction[3] = {ray.direction_x, ray.direction_y, ray.direction_z};
-  const float x = __builtin_fabsf(direction[0]), y = __builtin_fabsf(direction[1]),
-              z = __builtin_fabsf(direction[2]);
-  const int kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+  const float x = __builtin_fabsf(ray.direction_x), y = __builtin_fabsf(ray.direction_y),
+              z = __builtin_fabsf(ray.direction_z);
+  const float greatest_xy = x < y ? y : x;
+  const int kz = greatest_xy < z ? 2 : x < y ? 1 : 0;
+  const float major = (&ray.direction_x)[kz];
   const int next = kz == 2 ? 0 : kz + 1, last = kz == 0 ? 2 : kz - 1;
-  const bool is_negative = direction[kz] < 0.0f;
+  const bool is_negative = major < 0.0f;
   out.kz = kz;
   out.kx = is_negative ? last : next;
   out.ky = is_negative ? next : last;
-  const int exponent = exponent_of(direction[kz]);
+  const int exponent = exponent_of(major);
   out.scale = power_of_two(exponent);
   out.unscale = power_of_two(-exponent);
-  for (int axis = 0; axis < 3; ++axis) {
-    out.direction[axis] = static_cast<float>(static_cast<double>(direction[axis]) * out.unscale);
-  }
-  out.shear_x = out.direction[out.kx] / out.direction[kz];
-  out.shear_y = out.direction[out.ky] / out.direction[kz];
+  store(out.origin, load<4>(&ray.origin_x));
+  store_rounded(out.direction, load_widened(&ray.direction_x) * broadcast_double(out.unscale));
+  const vfloat<4> direction = load<4>(out.direction);
+  const vfloat<4> greatest = broadcast<4>(out.direction[kz]);
+  store(out.ratio, direction / greatest);
   out.shear_z = 1.0f / out.direction[kz];
   out.tmin = ray.tmin;
   out.tmax = ray.tmax;
@@ -115,34 +114,49 @@ struct SlabRay {
   size_t far_plane[3];
 };
 
+/// x, y and z of a triple that stands alone, without reading beyond it.
+inline vfloat<4> load_triple(const Vec3f& triple) {
+  const float lanes[4] = {triple.x, triple.y, triple.z, 0.0f};
+  return load<4>(lanes);
+}
+
+/// The axes lie in the lanes. The margin takes S = 1 along the major axis too, where 0 would do.
 template <int N>
 inline void set_up_slabs(const ScalarRay& ray, const TreeView& tree, SlabRay<N>& out) {
-  const float centre[3] = {tree.centre.x, tree.centre.y, tree.centre.z};
-  const float greatest[3] = {tree.greatest_bound.x, tree.greatest_bound.y, tree.greatest_bound.z};
-  const float major_magnitude =
-      __builtin_fabsf(ray.origin[ray.kz] - centre[ray.kz]) + greatest[ray.kz] + kLeastMagnitude;
-  const float major_direction = __builtin_fabsf(ray.direction[ray.kz]);
-  const float least = kLeastDirection * major_direction;
+  const vfloat<4> origin = load<4>(ray.origin) - load_triple(tree.centre);
+  const vfloat<4> magnitude =
+      absolute(origin) + (load_triple(tree.greatest_bound) + broadcast<4>(kLeastMagnitude));
+  float magnitudes[4];
+  store(magnitudes, magnitude);
+  const float major_magnitude = magnitudes[ray.kz];
+  const vfloat<4> direction = load<4>(ray.direction);
+  const vfloat<4> size = absolute(direction);
+  const float major_size = __builtin_fabsf(ray.direction[ray.kz]);
+  const vfloat<4> raised = max(size, broadcast<4>(kLeastDirection * major_size));
+  const vfloat<4> reciprocal_size = broadcast<4>(1.0f) / raised;
+  const vfloat<4> reciprocal = copy_sign(reciprocal_size, direction);
+  const vfloat<4> relative =
+      broadcast<4>(kMargin) *
+      (magnitude + absolute(load<4>(ray.ratio)) * broadcast<4>(major_magnitude)) * reciprocal_size;
+  // A raised component moves the point by what was added, times t <= M_kz / |d_kz|.
+  const vfloat<4> moved =
+      (raised - size) * reciprocal_size * broadcast<4>(major_magnitude / major_size);
+  const vfloat<4> margin = relative + moved;
+  const vfloat<4> product = origin * reciprocal;
+  float reciprocals[4], near_offsets[4], far_offsets[4];
+  store(reciprocals, reciprocal);
+  store(near_offsets, broadcast<4>(0.0f) - product - margin);
+  store(far_offsets, margin - product);
+  const uint32_t backward = sign_bits(direction);
   for (int axis = 0; axis < 3; ++axis) {
-    const float origin = ray.origin[axis] - centre[axis];
-    const float magnitude = __builtin_fabsf(origin) + greatest[axis] + kLeastMagnitude;
-    float direction = ray.direction[axis];
-    const float size = __builtin_fabsf(direction);
-    const bool is_raised = size < least;
-    if (is_raised) direction = __builtin_copysignf(least, direction);
-    const float reciprocal = 1.0f / direction;
-    const float shear = axis == ray.kz ? 0.0f : size / major_direction;
-    float margin = kMargin * (magnitude + shear * major_magnitude) * __builtin_fabsf(reciprocal);
-    // A raised component moves the point by at most 2^-64 |d_kz| t <= 2^-64 M_kz.
-    if (is_raised) margin += major_magnitude / major_direction;
-    const float product = origin * reciprocal;
-    out.reciprocal[axis] = broadcast<N>(reciprocal);
-    out.near_offset[axis] = broadcast<N>(-product - margin);
-    out.far_offset[axis] = broadcast<N>(margin - product);
-    const size_t lower = 2 * axis * N * sizeof(float), upper = lower + N * sizeof(float);
-    const bool is_backward = __builtin_signbit(direction);
-    out.near_plane[axis] = is_backward ? upper : lower;
-    out.far_plane[axis] = is_backward ? lower : upper;
+    out.reciprocal[axis] = broadcast<N>(reciprocals[axis]);
+    out.near_offset[axis] = broadcast<N>(near_offsets[axis]);
+    out.far_offset[axis] = broadcast<N>(far_offsets[axis]);
+    constexpr size_t side = N * sizeof(float);
+    const size_t lower = 2 * static_cast<size_t>(axis) * side;
+    const size_t is_backward = (backward >> axis) & 1u;
+    out.near_plane[axis] = lower + is_backward * side;
+    out.far_plane[axis] = lower + (1 - is_backward) * side;
   }
   out.tmin = broadcast<N>(scaled_lower(ray, ray.tmin));
 }

@@ -18,64 +18,72 @@ struct StackEntry {
   uint32_t reserved;
 };
 
+/// A path of kMaxWideDepth nodes leaves at most N - 1 entries at each.
 template <int N>
-struct Stack {
-  // A path of kMaxWideDepth nodes leaves at most N - 1 entries at each.
-  StackEntry entries[kMaxWideDepth * (N - 1) + 1];
-  StackEntry* top = entries;
-
-  bool is_empty() const { return top == entries; }
-  void push(StackEntry entry) { *top++ = entry; }
-  StackEntry pop() { return *--top; }
-};
+constexpr uint32_t kStackSize = kMaxWideDepth*(N - 1) + 1;
 
 template <int N>
 inline StackEntry child_of(const WideNode<N>& node, int slot, float entry) {
   return {node.child[slot], node.mask[slot], entry, 0};
 }
 
-/// Puts the nearest of the hit slots into next and the others onto the stack, farthest first.
+/// Brings a child that will be visited later into the cache.
 template <int N>
-inline void choose_nearest(const WideNode<N>& node, uint32_t hits, const float* entry,
-                           Stack<N>& stack, StackEntry& next) {
+inline void prefetch(const TreeView& tree, uint32_t child) {
+  const bool is_leaf = (child & kLeafFlag) != 0;
+  const auto* base = static_cast<const char*>(is_leaf ? tree.leaves : tree.nodes);
+  const size_t size = is_leaf ? sizeof(LeafBlock<N>) : sizeof(WideNode<N>);
+  const char* first = base + static_cast<size_t>(child & ~kLeafFlag) * size;
+  for (size_t offset = 0; offset < size; offset += 64) __builtin_prefetch(first + offset);
+}
+
+/// Puts the nearest of the hit slots into next and the others onto the stack, farthest first.
+/// Returns the new top of the stack.
+template <int N>
+inline StackEntry* choose_nearest(const TreeView& tree, const WideNode<N>& node, uint32_t hits,
+                                  const float* entry, StackEntry* top, StackEntry& next) {
   int slot = __builtin_ctz(hits);
   hits &= hits - 1;
   next = child_of(node, slot, entry[slot]);
-  if (hits == 0) return;
-  StackEntry* const bottom = stack.top;
+  if (hits == 0) return top;
+  StackEntry* const bottom = top;
   for (; hits; hits &= hits - 1) {
     slot = __builtin_ctz(hits);
     StackEntry other = child_of(node, slot, entry[slot]);
+    prefetch<N>(tree, other.child);
     if (other.entry < next.entry) {
       const StackEntry nearer = other;
       other = next;
       next = nearer;
     }
     // Insertion sort: few children are hit at once.
-    StackEntry* place = stack.top++;
+    StackEntry* place = top++;
     for (; place != bottom && place[-1].entry < other.entry; --place) *place = place[-1];
     *place = other;
   }
+  return top;
 }
 
 /// Puts the first of the hit slots into next and the others onto the stack, in their order.
 template <int N>
-inline void choose_first(const WideNode<N>& node, uint32_t hits, const float* entry,
-                         Stack<N>& stack, StackEntry& next) {
+inline StackEntry* choose_first(const WideNode<N>& node, uint32_t hits, const float* entry,
+                                StackEntry* top, StackEntry& next) {
   for (; hits & (hits - 1);) {
     const int slot = 31 - __builtin_clz(hits);
-    stack.push(child_of(node, slot, entry[slot]));
+    *top++ = child_of(node, slot, entry[slot]);
     hits ^= 1u << slot;
   }
   const int slot = __builtin_ctz(hits);
   next = child_of(node, slot, entry[slot]);
+  return top;
 }
 
 template <int N, typename Query, typename Probe>
 inline void traverse(const TreeView& tree, const SlabRay<N>& ray, Query& query, Probe& probe) {
   const auto* const nodes = static_cast<const WideNode<N>*>(tree.nodes);
   const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
-  Stack<N> stack;
+  StackEntry stack[kStackSize<N>];
+  StackEntry* top = stack;
   const float ray_begin = scaled_lower(query.scalar, query.scalar.tmin);
   StackEntry current{tree.root, tree.root_mask, ray_begin, 0};
   while (true) {
@@ -88,9 +96,9 @@ inline void traverse(const TreeView& tree, const SlabRay<N>& ray, Query& query, 
         float entries[N];
         store(entries, entry);
         if constexpr (Query::kOrdered) {
-          choose_nearest(node, hits, entries, stack, current);
+          top = choose_nearest(tree, node, hits, entries, top, current);
         } else {
-          choose_first(node, hits, entries, stack, current);
+          top = choose_first(node, hits, entries, top, current);
         }
         continue;
       }
@@ -99,8 +107,8 @@ inline void traverse(const TreeView& tree, const SlabRay<N>& ray, Query& query, 
       if (query.visit_leaf(leaves[current.child ^ kLeafFlag], current.mask, probe)) return;
     }
     do {
-      if (stack.is_empty()) return;
-      current = stack.pop();
+      if (top == stack) return;
+      current = *--top;
     } while (Query::kOrdered && current.entry > query.best_bound);
   }
 }

@@ -25,8 +25,8 @@ inline void set_up_shear(const ScalarRay& ray, ShearRay<N>& out) {
   out.origin_x = broadcast<N>(ray.origin[ray.kx]);
   out.origin_y = broadcast<N>(ray.origin[ray.ky]);
   out.origin_z = broadcast<N>(ray.origin[ray.kz]);
-  out.shear_x = broadcast<N>(ray.shear_x);
-  out.shear_y = broadcast<N>(ray.shear_y);
+  out.shear_x = broadcast<N>(ray.ratio[ray.kx]);
+  out.shear_y = broadcast<N>(ray.ratio[ray.ky]);
   out.shear_z = broadcast<N>(ray.shear_z);
 }
 
@@ -125,8 +125,8 @@ inline void compute_barycentrics(const LeafBlock<N>& leaf, const ScalarRay& ray,
   double x[3], y[3];
   for (int k = 0; k < 3; ++k) {
     const float along = leaf.position[k][ray.kz][lane] - ray.origin[ray.kz];
-    x[k] = (leaf.position[k][ray.kx][lane] - ray.origin[ray.kx]) - ray.shear_x * along;
-    y[k] = (leaf.position[k][ray.ky][lane] - ray.origin[ray.ky]) - ray.shear_y * along;
+    x[k] = (leaf.position[k][ray.kx][lane] - ray.origin[ray.kx]) - ray.ratio[ray.kx] * along;
+    y[k] = (leaf.position[k][ray.ky][lane] - ray.origin[ray.ky]) - ray.ratio[ray.ky] * along;
   }
   const double edge_u = x[2] * y[1] - y[2] * x[1];
   const double edge_v = x[0] * y[2] - y[0] * x[2];

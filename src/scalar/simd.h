@@ -2,6 +2,7 @@
 // The vocabulary of the kernels in portable C++: the oracle of the other instruction sets.
 //
 //   vfloat<N>      N floats: load, store, + - *, min, max, multiply_add, comparisons to bit masks
+//   vfloat<4>      also /, absolute, copy_sign, sign_bits: for the set-up of a ray
 //   vdouble4       4 doubles, read from and written to floats
 //
 // min and max return their second operand where a lane is NaN or the two are equal, as the SSE
@@ -78,6 +79,20 @@ inline uint32_t less_equal(vfloat<N> a, vfloat<N> b) {
 template <int N>
 inline uint32_t equal(vfloat<N> a, vfloat<N> b) {
   return mask_of<N>([&](int i) { return a.lane[i] == b.lane[i]; });
+}
+
+inline vfloat<4> operator/(vfloat<4> a, vfloat<4> b) {
+  return lane_by_lane<4>([&](int i) { return a.lane[i] / b.lane[i]; });
+}
+inline vfloat<4> absolute(vfloat<4> a) {
+  return lane_by_lane<4>([&](int i) { return __builtin_fabsf(a.lane[i]); });
+}
+inline vfloat<4> copy_sign(vfloat<4> magnitude, vfloat<4> sign) {
+  return lane_by_lane<4>(
+      [&](int i) { return __builtin_copysignf(magnitude.lane[i], sign.lane[i]); });
+}
+inline uint32_t sign_bits(vfloat<4> a) {
+  return mask_of<4>([&](int i) { return __builtin_signbit(a.lane[i]) != 0; });
 }
 
 struct vdouble4 {

@@ -49,6 +49,18 @@ inline uint32_t equal(vfloat<4> a, vfloat<4> b) {
   return static_cast<uint32_t>(simde_mm_movemask_ps(simde_mm_cmpeq_ps(a.value, b.value)));
 }
 
+inline vfloat<4> operator/(vfloat<4> a, vfloat<4> b) { return {simde_mm_div_ps(a.value, b.value)}; }
+inline vfloat<4> absolute(vfloat<4> a) {
+  return {simde_mm_andnot_ps(simde_mm_set1_ps(-0.0f), a.value)};
+}
+/// The magnitude is not negative.
+inline vfloat<4> copy_sign(vfloat<4> magnitude, vfloat<4> sign) {
+  return {simde_mm_or_ps(magnitude.value, simde_mm_and_ps(simde_mm_set1_ps(-0.0f), sign.value))};
+}
+inline uint32_t sign_bits(vfloat<4> a) {
+  return static_cast<uint32_t>(simde_mm_movemask_ps(a.value));
+}
+
 }  // namespace
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami
