@@ -93,18 +93,17 @@ std::vector<kiwami_ray> random_rays(size_t count, uint64_t seed) {
   Random random(seed, 1);
   std::vector<kiwami_ray> rays(count);
   for (kiwami_ray& ray : rays) {
-    ray = kiwami_ray{2 * random.symmetric(),
-                     2 * random.symmetric(),
-                     2 * random.symmetric(),
-                     0,
-                     random.symmetric(),
-                     random.symmetric(),
-                     random.symmetric(),
-                     0,
-                     random.unit(),
-                     ~uint32_t{0},
-                     0,
-                     0};
+    float origin[3], target[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = 2 * random.symmetric();
+      target[axis] = random.symmetric();
+    }
+    ray = ray_along_z(origin[0], origin[1]);
+    ray.origin_z = origin[2];
+    ray.direction_x = target[0] - origin[0];
+    ray.direction_y = target[1] - origin[1];
+    ray.direction_z = target[2] - origin[2];
+    ray.time = random.unit();
     ray.tmin = random.one_in(4) ? random.unit() : 0.0f;
     ray.tmax = random.one_in(4) ? 2 * random.unit() : kInfinity;
     ray.flags = random.one_in(4) ? random.below(4) : 0;
