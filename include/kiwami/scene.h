@@ -19,7 +19,7 @@ enum {
   KIWAMI_PARAMETER_BVH_WIDTH = 1,      /* 4, 8 or 16 children a node; 0: the device's default */
   KIWAMI_PARAMETER_MERGE_LEAVES = 2,   /* 1: bottom nodes and leaf blocks are shared by masks; 0 */
   KIWAMI_PARAMETER_MERGE_RING = 3,     /* how many open nodes the merging chooses among, 1 to 64 */
-  KIWAMI_PARAMETER_BIN_COUNT = 4,      /* bins of the surface area heuristic, 4 to 64 */
+  KIWAMI_PARAMETER_BIN_COUNT = 4,      /* bins of the surface area heuristic, 4 to 32 */
   KIWAMI_PARAMETER_MAX_LEAF_SIZE = 5,  /* triangles a leaf, 1 to 16; 0: one full leaf block */
   KIWAMI_PARAMETER_NODE_COST = 6,      /* cost of visiting a node, 0.01 to 100 */
   KIWAMI_PARAMETER_LEAF_COST = 7,      /* cost of testing a leaf block, 0.01 to 100 */

@@ -3,7 +3,7 @@
  * Kiwami: rays against a committed scene, in batches.
  *
  * Results are exact and the same to the bit on every ISA, node width and thread count:
- * - a hit counts when tmin <= t <= tmax;
+ * - a hit counts when tmin <= t <= tmax; a distance beyond the greatest float is none;
  * - the closest hit is the least (t, instance, geometry, primitive);
  * - of two triangles that share an edge, exactly one owns it: no ray slips between neighbours, and
  *   none meets both;
@@ -36,7 +36,7 @@ typedef struct kiwami_ray {
   float direction_x, direction_y, direction_z;
   float tmax;     /* may be infinite */
   float time;     /* 0 to 1; for geometries that move */
-  uint32_t mask;  /* compared with the geometry's mask */
+  uint32_t mask;  /* compared with the geometry's mask; a ray with mask 0 meets nothing */
   uint32_t flags; /* KIWAMI_RAY_* */
   uint32_t id;    /* the caller's own; not read */
 } kiwami_ray;

@@ -14,7 +14,7 @@ constexpr ParameterBounds kBounds[kLastParameter + 1] = {
     {0, 0, 0, true},           {0, 16, 0, true},  // BVH_WIDTH
     {0, 1, 1, true},                              // MERGE_LEAVES
     {1, 64, 8, true},                             // MERGE_RING
-    {4, 64, 16, true},                            // BIN_COUNT
+    {4, 32, 16, true},                            // BIN_COUNT
     {0, 16, 0, true},                             // MAX_LEAF_SIZE
     {0.01, 100.0, 1.0, false},                    // NODE_COST
     {0.01, 100.0, 1.0, false},                    // LEAF_COST

@@ -64,7 +64,7 @@ struct QueryBase {
       const int lane = __builtin_ctz(inside);
       if (!(scalar.tmin <= t[lane] && t[lane] <= scalar.tmax)) continue;
       if (!is_visible(scene, scalar, leaf.id[lane], determinant[lane])) continue;
-      probe.on_accept(static_cast<float>(static_cast<double>(t[lane]) * scalar.scale));
+      probe.on_accept(scaled_upper(scalar, t[lane]));
       if (accept(lane, t[lane])) return true;
     }
     return false;

@@ -24,8 +24,10 @@ constexpr float kMargin = 9.0f * 0x1p-24f;
 constexpr float kLeastMagnitude = 0x1p-100f;
 /// Smaller direction components, relative to the greatest, are raised to this.
 constexpr float kLeastDirection = 0x1p-64f;
-/// Widens scaled distances that may have become denormal; nothing to any other.
-constexpr float kLeastDistance = 0x1p-140f;
+/// Widens scaled distances: where a distance is denormal it has been rounded by up to half the
+/// least float, where a scaled one is, by as much; any other is left as it is.
+constexpr double kLeastDistance = 0x1p-140;
+constexpr double kLeastFloat = 0x1p-149;
 
 /// The part of the set-up that no tree has a say in. Directions and distances are scaled by the
 /// power of two that brings the greatest direction component into [1, 2): so no product below can
@@ -34,24 +36,32 @@ struct ScalarRay {
   float origin[4];     ///< x, y, z; the fourth lane is not used
   float direction[4];  ///< scaled; the same
   float ratio[4];      ///< direction / greatest direction component
-  float tmin, tmax;    ///< as given
+  float tmin, tmax;    ///< as given, but finite: a distance that overflows is no hit
   double scale;        ///< scaled distance = distance * scale
   double unscale;      ///< its inverse
+  double slack;        ///< widens scaled distances
   int kx, ky, kz;      ///< kz: axis of the greatest component; kx, ky: so that winding is kept
   float shear_z;       ///< 1 / direction[kz]; ratio[kx] and ratio[ky] are the other two shears
   uint32_t mask, flags;
 };
 
-/// False for a ray that can only miss: NaN, zero or infinite direction, origin out of range. Each
-/// comparison is false for NaN.
+/// The first and second four floats of a ray: origin and tmin, direction and tmax.
+inline const float* first_half(const kiwami_ray& ray) {
+  return reinterpret_cast<const float*>(&ray);
+}
+inline const float* second_half(const kiwami_ray& ray) { return first_half(ray) + 4; }
+
+/// False for a ray that can only miss: NaN, zero or infinite direction, origin out of range, no
+/// finite distance between tmin and tmax, a mask without bits. Each comparison is false for NaN.
 inline bool is_traceable(const kiwami_ray& ray) {
   constexpr uint32_t xyz = 7;
-  const vfloat<4> origin = absolute(load<4>(&ray.origin_x));
-  const vfloat<4> direction = absolute(load<4>(&ray.direction_x));
+  const vfloat<4> origin = absolute(load<4>(first_half(ray)));
+  const vfloat<4> direction = absolute(load<4>(second_half(ray)));
   const bool is_in_range = (less_equal(origin, broadcast<4>(KIWAMI_MAX_COORDINATE)) & xyz) == xyz;
   const bool is_finite = (less_equal(direction, broadcast<4>(__FLT_MAX__)) & xyz) == xyz;
   const bool is_zero = (less_equal(direction, broadcast<4>(0.0f)) & xyz) == xyz;
-  return is_in_range && is_finite && !is_zero && ray.tmin <= ray.tmax;
+  return is_in_range && is_finite && !is_zero && ray.tmin <= ray.tmax && ray.tmin <= __FLT_MAX__ &&
+         ray.tmax >= -__FLT_MAX__ && ray.mask != 0;
 }
 
 inline double power_of_two(int exponent) {
@@ -73,7 +83,7 @@ inline void set_up_scalar(const kiwami_ray& ray, ScalarRay& out) {
               z = __builtin_fabsf(ray.direction_z);
   const float greatest_xy = x < y ? y : x;
   const int kz = greatest_xy < z ? 2 : x < y ? 1 : 0;
-  const float major = (&ray.direction_x)[kz];
+  const float major = second_half(ray)[kz];
   const int next = kz == 2 ? 0 : kz + 1, last = kz == 0 ? 2 : kz - 1;
   const bool is_negative = major < 0.0f;
   out.kz = kz;
@@ -82,24 +92,25 @@ inline void set_up_scalar(const kiwami_ray& ray, ScalarRay& out) {
   const int exponent = exponent_of(major);
   out.scale = power_of_two(exponent);
   out.unscale = power_of_two(-exponent);
-  store(out.origin, load<4>(&ray.origin_x));
-  store_rounded(out.direction, load_widened(&ray.direction_x) * broadcast_double(out.unscale));
+  store(out.origin, load<4>(first_half(ray)));
+  store_rounded(out.direction, load_widened(second_half(ray)) * broadcast_double(out.unscale));
   const vfloat<4> direction = load<4>(out.direction);
   const vfloat<4> greatest = broadcast<4>(out.direction[kz]);
   store(out.ratio, direction / greatest);
   out.shear_z = 1.0f / out.direction[kz];
-  out.tmin = ray.tmin;
-  out.tmax = ray.tmax;
+  out.slack = kLeastDistance + kLeastFloat * out.scale;
+  out.tmin = ray.tmin > -__FLT_MAX__ ? ray.tmin : -__FLT_MAX__;
+  out.tmax = ray.tmax < __FLT_MAX__ ? ray.tmax : __FLT_MAX__;
   out.mask = ray.mask;
   out.flags = ray.flags;
 }
 
 /// A lower (upper) bound of a scaled distance.
 inline float scaled_lower(const ScalarRay& ray, float t) {
-  return static_cast<float>(static_cast<double>(t) * ray.scale) - kLeastDistance;
+  return static_cast<float>(static_cast<double>(t) * ray.scale - ray.slack);
 }
 inline float scaled_upper(const ScalarRay& ray, float t) {
-  return static_cast<float>(static_cast<double>(t) * ray.scale) + kLeastDistance;
+  return static_cast<float>(static_cast<double>(t) * ray.scale + ray.slack);
 }
 
 /// The ray as the node test reads it: near = bound * reciprocal + near_offset per axis.
@@ -114,18 +125,14 @@ struct SlabRay {
   size_t far_plane[3];
 };
 
-/// x, y and z of a triple that stands alone, without reading beyond it.
-inline vfloat<4> load_triple(const Vec3f& triple) {
-  const float lanes[4] = {triple.x, triple.y, triple.z, 0.0f};
-  return load<4>(lanes);
-}
-
 /// The axes lie in the lanes. The margin takes S = 1 along the major axis too, where 0 would do.
 template <int N>
 inline void set_up_slabs(const ScalarRay& ray, const TreeView& tree, SlabRay<N>& out) {
-  const vfloat<4> origin = load<4>(ray.origin) - load_triple(tree.centre);
+  const vfloat<4> origin =
+      load<4>(ray.origin) - load<4>(reinterpret_cast<const float*>(&tree.centre));
   const vfloat<4> magnitude =
-      absolute(origin) + (load_triple(tree.greatest_bound) + broadcast<4>(kLeastMagnitude));
+      absolute(origin) + (load<4>(reinterpret_cast<const float*>(&tree.greatest_bound)) +
+                          broadcast<4>(kLeastMagnitude));
   float magnitudes[4];
   store(magnitudes, magnitude);
   const float major_magnitude = magnitudes[ray.kz];

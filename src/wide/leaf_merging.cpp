@@ -2,6 +2,7 @@
 #include "wide/leaf_merging.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace kiwami {
 namespace {
@@ -10,9 +11,13 @@ uint16_t mask_of(uint32_t first, uint32_t size) {
   return static_cast<uint16_t>(((1u << size) - 1) << first);
 }
 
-/// Where a node went that was joined with another one: its slots moved up by shift.
-struct Redirection {
-  uint32_t node, shift;
+constexpr uint32_t kMaxWidth = 16;
+constexpr uint32_t kNone = ~0u;
+
+/// A node that was opened. Where it was joined with another one, its slots moved to node, up by
+/// shift. Where the ring gave it up, next is the one given up before it with as many used slots.
+struct OpenedNode {
+  uint32_t node, shift, next;
 };
 
 /// The nodes that still take owners.
@@ -22,12 +27,19 @@ class Ring {
       : width_(width),
         smallest_(smallest),
         entries_(memory, std::max(capacity, 1u)),
-        redirections_(memory) {}
+        opened_(memory) {
+    std::fill(std::begin(given_up_), std::end(given_up_), kNone);
+  }
 
   /// A node for an owner, and its first slot there: both may move while the ring is in use.
   SharedPlace place(uint32_t size) {
     if (size + smallest_ > width_) return {open_node(), mask_of(0, size), 0};
-    const size_t chosen = choose(size);
+    const size_t exact = find_exact(size);
+    const uint32_t given_up = exact == size_ ? take_given_up(width_ - size) : kNone;
+    if (given_up != kNone) {
+      return {given_up, mask_of(width_ - size, size), static_cast<uint16_t>(width_ - size)};
+    }
+    const size_t chosen = exact != size_ ? exact : choose_inexact(size);
     Entry& entry = entries_[chosen];
     const SharedPlace place = {entry.node, mask_of(entry.used, size),
                                static_cast<uint16_t>(entry.used)};
@@ -39,32 +51,31 @@ class Ring {
   /// Joins what is still open, as far as it fits.
   void finish() {
     while (join_pair(true) || join_pair(false)) continue;
+    while (size_) give_up(size_ - 1);
   }
 
   /// Where a place has moved to.
   SharedPlace settle(SharedPlace place) const {
-    while (redirections_[place.index].node != place.index) {
-      const Redirection& redirection = redirections_[place.index];
-      place = {redirection.node, static_cast<uint16_t>(place.mask << redirection.shift),
-               static_cast<uint16_t>(place.first + redirection.shift)};
+    while (opened_[place.index].node != place.index) {
+      const OpenedNode& moved = opened_[place.index];
+      place = {moved.node, static_cast<uint16_t>(place.mask << moved.shift),
+               static_cast<uint16_t>(place.first + moved.shift)};
     }
     return place;
   }
 
-  uint32_t opened() const { return static_cast<uint32_t>(redirections_.size()); }
+  uint32_t opened() const { return static_cast<uint32_t>(opened_.size()); }
 
  private:
   struct Entry {
     uint32_t node, used;
   };
 
-  size_t choose(uint32_t size) {
-    const size_t exact = find_exact(size);
-    if (exact != size_) return exact;
+  size_t choose_inexact(uint32_t size) {
     if (size_ < entries_.size() || join_pair(true)) return open_entry();
     const size_t tightest = find_tightest(size);
     if (tightest != size_) return tightest;
-    if (!join_pair(false)) close(find_fullest());
+    if (!join_pair(false)) give_up(find_fullest());
     return open_entry();
   }
 
@@ -107,16 +118,38 @@ class Ring {
       }
     }
     if (best_high == 0) return false;
-    redirections_[entries_[best_high].node] = {entries_[best_low].node, entries_[best_low].used};
+    move(entries_[best_high].node, entries_[best_low].node, entries_[best_low].used);
     entries_[best_low].used = best_used;
     close(best_high);
     if (best_used == width_) close(best_low);
     return true;
   }
 
+  /// The last node given up with so many used slots; kNone where there is none.
+  uint32_t take_given_up(uint32_t used) {
+    const uint32_t node = given_up_[used];
+    if (node != kNone) given_up_[used] = opened_[node].next;
+    return node;
+  }
+
+  /// Joins an entry with a node that it fills, or lets it wait for an owner or node that fills it.
+  void give_up(size_t index) {
+    const Entry entry = entries_[index];
+    const uint32_t partner = take_given_up(width_ - entry.used);
+    if (partner != kNone) {
+      move(entry.node, partner, width_ - entry.used);
+    } else {
+      opened_[entry.node].next = given_up_[entry.used];
+      given_up_[entry.used] = entry.node;
+    }
+    close(index);
+  }
+
+  void move(uint32_t from, uint32_t to, uint32_t shift) { opened_[from] = {to, shift, kNone}; }
+
   uint32_t open_node() {
     const uint32_t node = opened();
-    redirections_.push_back({node, 0});
+    opened_.push_back({node, 0, kNone});
     return node;
   }
 
@@ -134,7 +167,8 @@ class Ring {
   uint32_t smallest_;     ///< fewer free slots than this are of use to nobody
   Array<Entry> entries_;  ///< by age
   size_t size_ = 0;
-  GrowingArray<Redirection> redirections_;  ///< of every node that was opened
+  GrowingArray<OpenedNode> opened_;
+  uint32_t given_up_[kMaxWidth + 1];  ///< by used slots: the last one given up
 };
 
 /// Gives the nodes that are left their final numbers, in the order of their last owners.

@@ -27,7 +27,8 @@ SharedPlaces place_alone(const Array<uint8_t>& sizes, Memory& memory);
 /// when no open node fits exactly: a new node is opened while the ring has room, since more open
 /// nodes make an exact fit likelier, and two open nodes that together fill one are joined; then
 /// the tightest fit is taken that leaves room for another owner (the smallest size); and where
-/// there is none, the fullest node is given up. Serves the lanes of leaf blocks in the same way.
+/// there is none, the fullest node is given up: it may only be completed by who fills it exactly,
+/// at whatever distance. Serves the lanes of leaf blocks in the same way.
 /// Nodes are numbered by their last owner: whoever owns a whole node before it has a lower number.
 SharedPlaces place_shared(const Array<uint8_t>& sizes, uint32_t width, uint32_t ring_size,
                           Memory& memory);

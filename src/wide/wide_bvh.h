@@ -50,7 +50,9 @@ struct TreeView {
   uint32_t root;          ///< a child reference
   uint32_t root_mask;     ///< 0: nothing to hit
   Vec3f centre;           ///< boxes are relative to it
+  float centre_padding;   ///< 0; four floats are read at once
   Vec3f greatest_bound;   ///< per axis, the greatest absolute box coordinate in the stored frame
+  float bound_padding;    ///< 0
 };
 
 /// Maps a running triangle id to its geometry. Plain data.

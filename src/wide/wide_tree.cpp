@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <cstring>
 #include <limits>
 
 #include "core/error.h"
@@ -65,7 +66,13 @@ class Packer {
 
   void run(const Parallel& parallel) {
     parallel.for_blocks(layout_.nodes.count, kPackingBlock, [this](size_t begin, size_t end) {
-      std::fill(nodes_ + begin, nodes_ + end, unused_node());
+      // With the bytes of padding, which are part of the file format.
+      WideNode<N> unused;
+      std::memset(static_cast<void*>(&unused), 0, sizeof unused);
+      set_unused(unused);
+      for (size_t i = begin; i < end; ++i) {
+        std::memcpy(static_cast<void*>(nodes_ + i), &unused, sizeof unused);
+      }
     });
     parallel.for_blocks(layout_.leaves.count, kPackingBlock, [this](size_t begin, size_t end) {
       std::fill(leaves_ + begin, leaves_ + end, unused_leaf());
@@ -80,15 +87,11 @@ class Packer {
   }
 
  private:
-  static WideNode<N> unused_node() {
-    WideNode<N> node;
+  static void set_unused(WideNode<N>& node) {
     for (int axis = 0; axis < 3; ++axis) {
       std::fill_n(node.bounds[axis][0], N, FLT_MAX);
       std::fill_n(node.bounds[axis][1], N, -FLT_MAX);
     }
-    std::fill_n(node.child, N, 0u);
-    std::fill_n(node.mask, N, uint16_t{0});
-    return node;
   }
 
   static LeafBlock<N> unused_leaf() {
