@@ -80,6 +80,14 @@ TEST_F(LeafMerging, ARingOfOneGivesUpTheOpenNode) {
   EXPECT_EQ(shared.places[1].index, shared.places[2].index);
 }
 
+TEST_F(LeafMerging, AGivenUpNodeIsCompletedByAnExactFit) {
+  const Array<uint8_t> sizes = sizes_of({5, 4, 4, 6, 3, 2});
+  const SharedPlaces shared = kiwami::place_shared(sizes, 8, 1, memory_);
+  check(sizes, shared, 8);
+  EXPECT_EQ(shared.count, 3u);
+  EXPECT_EQ(shared.places[0].index, shared.places[4].index);
+}
+
 TEST_F(LeafMerging, NodesAreNumberedByTheirLastOwner) {
   // 6 and 2 share a node; the 8 between them comes before the last of its owners.
   const Array<uint8_t> sizes = sizes_of({6, 8, 2});
