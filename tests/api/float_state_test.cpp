@@ -15,13 +15,14 @@ namespace {
 
 /// Coordinates so small that flushing denormal numbers to zero would lose them.
 Triangles tiny_triangles() {
-  Triangles triangles = random_triangles(3000, 21);
+  Triangles triangles = random_triangles(200, 21);
   for (float& coordinate : triangles.vertices) coordinate *= 0x1p-126f;
   return triangles;
 }
 
+/// Enough of them that batches run on all threads.
 std::vector<kiwami_ray> tiny_rays() {
-  std::vector<kiwami_ray> rays = random_rays(6000, 22);
+  std::vector<kiwami_ray> rays = random_rays(5000, 22);
   for (kiwami_ray& ray : rays) {
     ray.origin_x *= 0x1p-126f;
     ray.origin_y *= 0x1p-126f;
