@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct ClosedMesh {
   std::vector<Point> inside;   ///< well inside
   std::vector<Point> outside;  ///< well outside, near: in a hole or between spikes; maybe none
 };
+
+/// How GoogleTest prints one.
+inline void PrintTo(const ClosedMesh& closed, std::ostream* stream) { *stream << closed.name; }
 
 /// A sphere, a torus, a box of slivers, a star of thin spikes, a sphere far from the origin, one of
 /// 10^7 : 1, and one on integer coordinates, where most rays through features meet them exactly.

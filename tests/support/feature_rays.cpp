@@ -11,11 +11,16 @@
 namespace kiwami_tests {
 
 FeatureRayGenerator::FeatureRayGenerator(const ClosedMesh& closed, Random random)
-    : closed_(closed), random_(random), centre_(closed.inside.front()) {
+    : closed_(closed), random_(random) {
+  Point lower = closed.mesh.vertices.front(), upper = lower;
   for (const Point& p : closed.mesh.vertices) {
-    const Point d = p - centre_;
-    radius_ = std::max(radius_, std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z));
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], p[axis]);
+      upper[axis] = std::max(upper[axis], p[axis]);
+    }
   }
+  centre_ = (lower + upper) * 0.5f;
+  half_extent_ = (upper - lower) * 0.5f;
 }
 
 Point FeatureRayGenerator::feature() {
@@ -45,7 +50,10 @@ Point FeatureRayGenerator::outside_point() {
     length = std::sqrt(direction.x * direction.x + direction.y * direction.y +
                        direction.z * direction.z);
   } while (!(length > 0.1f && length <= 1.0f));
-  return centre_ + direction * (radius_ * (1.25f + 2.0f * random_.unit()) / length);
+  // In units of the box's half extents: beyond sqrt(3), some coordinate is outside the box.
+  direction = direction * ((1.8f + 2.0f * random_.unit()) / length);
+  for (int axis = 0; axis < 3; ++axis) direction[axis] *= half_extent_[axis];
+  return centre_ + direction;
 }
 
 kiwami_ray FeatureRayGenerator::outside_segment() {

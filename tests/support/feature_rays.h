@@ -27,8 +27,7 @@ class FeatureRayGenerator {
 
   const ClosedMesh& closed_;
   Random random_;
-  Point centre_{};
-  float radius_ = 0.0f;  ///< around the centre, of all vertices
+  Point centre_{}, half_extent_{};  ///< of the mesh's box
 };
 
 }  // namespace kiwami_tests
