@@ -65,7 +65,6 @@ View choose_view(const RenderOptions& options, const SceneFile& file, const Box&
 void check_options(const RenderOptions& options) {
   parse_mode(options.mode);
   parse_size("--size", options.size);
-  isa_of_name(options.trace.isa);
   if (!options.eye.empty()) parse_vector("--eye", options.eye);
   if (!options.target.empty()) parse_vector("--target", options.target);
   if (!options.up.empty()) parse_vector("--up", options.up);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "kiwami/commands.h"
+#include "kiwami/options.h"
 
 namespace {
 
@@ -18,6 +19,18 @@ int fail(std::string sentence) {
   return kFailure;
 }
 
+/// CLI11 says of an unknown command no more than that one is required.
+void check_command_name(const CLI::App& app, int argc, char** argv) {
+  const std::string expected = ", expected info, render, verify or demo; see kiwami --help";
+  if (argc < 2) throw kiwami::tools::UsageError("no command is given" + expected);
+  const std::string name = argv[1];
+  const auto commands =
+      app.get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
+  if (!name.starts_with("-") && commands.empty()) {
+    throw kiwami::tools::UsageError("there is no command '" + name + "'" + expected);
+  }
+}
+
 int run(int argc, char** argv) {
   int exit_code = 0;
   CLI::App app("Acceleration structures for ray tracing on CPUs", "kiwami");
@@ -27,10 +40,13 @@ int run(int argc, char** argv) {
   kiwami::tools::add_render_command(app, exit_code);
   kiwami::tools::add_verify_command(app, exit_code);
   kiwami::tools::add_demo_command(app, exit_code);
+  check_command_name(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {
     return app.exit(request);  // prints the help that was asked for
+  } catch (const CLI::ArgumentMismatch& error) {
+    return fail("an option lacks its value or has too many: " + std::string(error.what()));
   } catch (const CLI::ParseError& error) {
     return fail(error.what());
   }

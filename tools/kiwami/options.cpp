@@ -45,7 +45,14 @@ CLI::Validator finite_number(double lowest, double highest) {
 }
 
 void add_trace_options(CLI::App& command, TraceOptions& options) {
+  const auto check_isa = [](std::string& text) -> std::string {
+    for (const char* name : {"auto", "scalar", "sse", "avx2", "avx512"}) {
+      if (text == name) return {};
+    }
+    return "it is '" + text + "', expected auto, scalar, sse, avx2 or avx512";
+  };
   command.add_option("--isa", options.isa, "Instruction set: auto, scalar, sse, avx2 or avx512")
+      ->check(CLI::Validator(check_isa, ""))
       ->capture_default_str();
   const auto check_width = [](std::string& text) -> std::string {
     if (text == "0" || text == "4" || text == "8" || text == "16") return {};

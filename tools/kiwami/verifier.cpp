@@ -2,9 +2,9 @@
 #include "kiwami/verifier.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
 #include "kiwami/options.h"
 
@@ -30,17 +30,6 @@ std::vector<RaySet> make_ray_sets(const SceneFile& scene, const BuiltScene& buil
   sets.push_back(axis_rays(scene, box, count, seed));
   sets.push_back(aimed_rays(scene, box, count, seed));
   return sets;
-}
-
-Answers trace(const BuiltScene& scene, const std::vector<RaySet>& sets) {
-  Answers answers;
-  for (const RaySet& set : sets) {
-    answers.hits.emplace_back(set.rays.size());
-    answers.occluded.emplace_back(set.rays.size());
-    scene.closest_hits(set.rays, answers.hits.back());
-    scene.any_hits(set.rays, answers.occluded.back());
-  }
-  return answers;
 }
 
 void print_number(const char* name, float value) {
@@ -93,7 +82,7 @@ Verifier::Verifier(const SceneFile& scene, size_t rays_per_set, uint64_t seed)
       device_(KIWAMI_ISA_SCALAR, 1),
       reference_(device_, scene, {4, true}),
       sets_(make_ray_sets(scene, reference_, rays_per_set, seed)),
-      expected_(trace(reference_, sets_)) {}
+      expected_(trace_answers(reference_, sets_)) {}
 
 bool Verifier::run() {
   for (const RaySet& set : sets_) {
@@ -127,31 +116,20 @@ bool Verifier::run_contender(const Contender& contender) {
               native ? "native" : "scalar", contender.merge_leaves ? "yes" : "no",
               contender.threads, scene.info().build_seconds * 1e3);
   std::fflush(stdout);
-  if (!compare(trace(scene, sets_), name_of(contender))) return false;
+  if (!compare(trace_answers(scene, sets_), name_of(contender))) return false;
   std::printf("equal\n");
   return true;
 }
 
 bool Verifier::compare(const Answers& answers, const std::string& name) const {
-  for (size_t s = 0; s < sets_.size(); ++s) {
-    for (size_t i = 0; i < sets_[s].rays.size(); ++i) {
-      const kiwami_hit& own = answers.hits[s][i];
-      const kiwami_hit& expected = expected_.hits[s][i];
-      if (std::memcmp(&own, &expected, sizeof own) != 0) {
-        print_difference("closest hit", sets_[s], i);
-        print_hit(kReferenceName, expected);
-        print_hit(name, own);
-        return false;
-      }
-      if ((answers.occluded[s][i] != 0) != is_hit(expected)) {
-        print_difference("any hit", sets_[s], i);
-        print_hit(std::string("closest hit of ") + kReferenceName, expected);
-        std::printf("  %s: any hit says %u\n", name.c_str(), answers.occluded[s][i]);
-        return false;
-      }
-    }
-  }
-  return true;
+  const std::optional<Difference> difference = first_difference(expected_, answers);
+  if (!difference) return true;
+  const auto [set, ray, of_any_hit] = *difference;
+  print_difference(of_any_hit ? "any hit" : "closest hit", sets_[set], ray);
+  print_hit(kReferenceName, expected_.hits[set][ray]);
+  print_hit(name, answers.hits[set][ray]);
+  if (of_any_hit) std::printf("  any hit says %u\n", answers.occluded[set][ray]);
+  return false;
 }
 
 bool Verifier::compare_with_embree() const {

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "measure/answers.h"
 #include "measure/double_judge.h"
 #include "measure/library.h"
 #include "measure/ray_sets.h"
 
 namespace kiwami::tools {
-
-/// What a tracer answered to all ray sets.
-struct Answers {
-  std::vector<std::vector<kiwami_hit>> hits;
-  std::vector<std::vector<uint8_t>> occluded;
-};
 
 /// A device and a build that must answer as the reference does.
 struct Contender {

@@ -44,10 +44,14 @@ View fit_view(const Box& box, Vec3 up, float vertical_field_of_view, float aspec
   const Vec3 front = cross(side, top);
   const Vec3 towards_eye = normalize(front * 0.8f + side * 0.5f + top * 0.45f);
   const float narrower = half_height(vertical_field_of_view) * std::min(1.0f, aspect);
-  const float radius = std::max(0.5f * box.diagonal(), std::numeric_limits<float>::min());
+  // A box of no size is seen from near by, but not from within its rounding.
+  const Vec3 center = box.center();
+  const float least =
+      1e-4f * (1e-3f + std::abs(center.x) + std::abs(center.y) + std::abs(center.z));
+  const float radius = std::max(0.5f * box.diagonal(), least);
   // A sphere of this radius touches the sides of the view: distance = radius / sin(angle).
   const float distance = radius * std::sqrt(1.0f + narrower * narrower) / narrower;
-  return {box.center() + towards_eye * distance, box.center(), up, vertical_field_of_view};
+  return {center + towards_eye * distance, center, up, vertical_field_of_view};
 }
 
 View default_view(const SceneFile& scene, const Box& box, float aspect) {
