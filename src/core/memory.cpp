@@ -4,15 +4,41 @@
 #include <cstdint>
 #include <new>
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 #include "core/error.h"
 
 namespace kiwami {
+namespace {
+
+/// Incoherent rays in a large tree miss the cache of page addresses at nearly every node, so large
+/// blocks are laid out for huge pages.
+constexpr size_t kHugePageSize = size_t{1} << 21;
+
+size_t runtime_alignment(size_t size, size_t alignment) {
+  return size >= kHugePageSize && alignment < kHugePageSize ? kHugePageSize : alignment;
+}
+
+void* allocate_from_runtime(size_t size, size_t alignment) {
+  const std::align_val_t aligned{runtime_alignment(size, alignment)};
+  void* memory = ::operator new(size, aligned, std::nothrow);
+#if defined(__linux__)
+  // Only a wish: where it is refused, the block has ordinary pages.
+  if (memory && size >= kHugePageSize) {
+    madvise(memory, size & ~(kHugePageSize - 1), MADV_HUGEPAGE);
+  }
+#endif
+  return memory;
+}
+
+}  // namespace
 
 void* Allocator::allocate(size_t size, size_t alignment) const {
   if (size == 0) return nullptr;
-  void* memory = allocate_function
-                     ? allocate_function(user, size, alignment)
-                     : ::operator new(size, std::align_val_t(alignment), std::nothrow);
+  void* memory = allocate_function ? allocate_function(user, size, alignment)
+                                   : allocate_from_runtime(size, alignment);
   if (!memory) {
     throw Error(KIWAMI_ERROR_OUT_OF_MEMORY,
                 "allocation of %zu bytes at a multiple of %zu failed, expected memory", size,
@@ -32,7 +58,7 @@ void Allocator::deallocate(void* memory, size_t size, size_t alignment) const no
   if (allocate_function) {
     deallocate_function(user, memory, size, alignment);
   } else {
-    ::operator delete(memory, std::align_val_t(alignment));
+    ::operator delete(memory, std::align_val_t(runtime_alignment(size, alignment)));
   }
 }
 
