@@ -38,9 +38,10 @@ unsigned width_of(unsigned thread_count, kiwami_parallel_runner runner, unsigned
     return processors > 2 ? processors : 2;
   }
 #if defined(KIWAMI_TASKING_TBB)
-  if (thread_count != 0) return thread_count;
-  const int processors = tbb::info::default_concurrency();
-  return processors > 1 ? static_cast<unsigned>(processors) : 1;
+  // oneTBB never has more threads than processors, and prints a warning when asked for more.
+  const int concurrency = tbb::info::default_concurrency();
+  const unsigned processors = concurrency > 1 ? static_cast<unsigned>(concurrency) : 1;
+  return thread_count != 0 && thread_count < processors ? thread_count : processors;
 #else
   static_cast<void>(thread_count);
   return 1;
