@@ -39,7 +39,7 @@ uint64_t case_budget(uint64_t short_form) {
 }
 
 uint64_t public_scene_limit() {
-  return static_cast<uint64_t>(number_of("KIWAMI_TEST_SCENE_TRIANGLES", 250000.0));
+  return static_cast<uint64_t>(number_of("KIWAMI_TEST_SCENE_TRIANGLES", 100000.0));
 }
 
 std::vector<std::filesystem::path> public_scenes() {

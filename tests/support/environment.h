@@ -19,11 +19,10 @@ uint64_t ray_budget(uint64_t short_form);
 uint64_t case_budget(uint64_t short_form);
 
 /// The public scenes of KIWAMI_SCENES or of the folder shared/scenes beside the project, by name;
-/// empty where there is no such folder. KIWAMI_TEST_SCENE_TRIANGLES bounds the size of their files'
-/// worlds; see public_scene_limit.
+/// empty where there is no such folder.
 std::vector<std::filesystem::path> public_scenes();
 
-/// Larger public scenes are left out of the short form: 250,000 triangles, or
+/// Larger public scenes are left out of the short form: 100,000 triangles, or
 /// KIWAMI_TEST_SCENE_TRIANGLES.
 uint64_t public_scene_limit();
 
