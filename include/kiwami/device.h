@@ -54,7 +54,8 @@ typedef struct kiwami_device_desc {
   uint32_t struct_size;  /* bytes of this struct, set by kiwami_device_desc_init */
   uint32_t isa;          /* KIWAMI_ISA_*; AUTO also obeys the environment variable KIWAMI_ISA
                           * (auto, scalar, sse, avx2, avx512), any other value overrides it */
-  uint32_t thread_count; /* threads that builds and batches use at once; 0: one per processor.
+  uint32_t thread_count; /* threads that builds and batches use at once; 0, or more than there are
+                          * processors: one per processor.
                           * Ignored with a runner. */
   uint32_t flags;        /* KIWAMI_DEVICE_* */
   kiwami_parallel_runner runner; /* NULL: the library's own tasks */
