@@ -62,7 +62,7 @@ class Embree : public testing::TestWithParam<std::filesystem::path> {
                    << " triangles; KIWAMI_TEST_SCENE_TRIANGLES changes the limit";
     }
     RayGenerator generator(scene, Random(seed(), 31));
-    rays_.reserve(ray_budget(20000));
+    rays_.reserve(ray_budget(480000) / public_scenes().size() + 1);
     while (rays_.size() < rays_.capacity()) {
       kiwami_ray ray = generator.next();
       if (make_plain(ray)) rays_.push_back(ray);
