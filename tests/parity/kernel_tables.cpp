@@ -29,8 +29,10 @@ std::vector<NamedKernels> all_kernels() {
     if (!(usable & (1u << isa))) continue;
     for (const uint32_t width : {4u, 8u, 16u}) {
       if (!(kiwami::native_widths_of(isa) & (1u << width))) continue;
-      found.push_back({kiwami::isa_name(isa) + ("_" + std::to_string(width)), isa, width,
-                       kiwami::kernels_of(isa, width)});
+      std::string name = kiwami::isa_name(isa);
+      name += '_';
+      name += std::to_string(width);
+      found.push_back({name, isa, width, kiwami::kernels_of(isa, width)});
     }
   }
   return found;
