@@ -48,6 +48,20 @@ inline uint32_t equal(vfloat<8> a, vfloat<8> b) {
       simde_mm256_movemask_ps(simde_mm256_cmp_ps(a.value, b.value, SIMDE_CMP_EQ_OQ)));
 }
 
+/// A broadcast from memory costs as much as a load, so the four stay scalar.
+template <int N>
+struct uniform4 {
+  float lane[4];
+
+  vfloat<N> operator[](int i) const { return broadcast<N>(lane[i]); }
+};
+template <int N>
+inline uniform4<N> spread(vfloat<4> a) {
+  uniform4<N> result;
+  store(result.lane, a);
+  return result;
+}
+
 struct vdouble4 {
   simde__m256d value;
 };

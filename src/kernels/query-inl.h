@@ -35,13 +35,11 @@ template <int N>
 struct QueryBase {
   const SceneView& scene;
   const ScalarRay& scalar;
-  ShearRay<N> shear;
   vfloat<N> nearest;  ///< scaled and widened: rejects triangles before their distance is known
   vfloat<N> best;     ///< the same for the far end; the closest hit draws it nearer
   float best_bound;   ///< best, as one float
 
   QueryBase(const SceneView& scene_view, const ScalarRay& ray) : scene(scene_view), scalar(ray) {
-    set_up_shear(ray, shear);
     nearest = broadcast<N>(scaled_lower(ray, ray.tmin));
     set_best(ray.tmax);
   }
@@ -56,7 +54,7 @@ struct QueryBase {
   template <typename Probe, typename Accept>
   bool for_each_hit(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe, Accept accept) {
     ShearedBlock<N> sheared;
-    uint32_t inside = test_inside<N>(leaf, scalar, shear, nearest, best, lanes, sheared, probe);
+    uint32_t inside = test_inside<N>(leaf, scalar, nearest, best, lanes, sheared, probe);
     if (inside == 0) return false;
     float t[N], determinant[N];
     compute_distances<N>(sheared, scalar, inside, t, determinant);

@@ -113,16 +113,37 @@ inline float scaled_upper(const ScalarRay& ray, float t) {
   return static_cast<float>(static_cast<double>(t) * ray.scale + ray.slack);
 }
 
+/// Where in a node the planes lie that a ray meets first and last along each axis, in bytes, for
+/// each combination of backward axes.
+template <int N>
+struct PlaneOffsets {
+  size_t near[3], far[3];
+};
+
+template <int N>
+constexpr PlaneOffsets<N> plane_offsets(uint32_t backward) {
+  PlaneOffsets<N> offsets{};
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    const uint32_t is_backward = (backward >> axis) & 1u;
+    offsets.near[axis] = (2 * axis + is_backward) * N * sizeof(float);
+    offsets.far[axis] = (2 * axis + 1 - is_backward) * N * sizeof(float);
+  }
+  return offsets;
+}
+
+template <int N>
+constexpr PlaneOffsets<N> kPlaneOffsets[8] = {
+    plane_offsets<N>(0), plane_offsets<N>(1), plane_offsets<N>(2), plane_offsets<N>(3),
+    plane_offsets<N>(4), plane_offsets<N>(5), plane_offsets<N>(6), plane_offsets<N>(7)};
+
 /// The ray as the node test reads it: near = bound * reciprocal + near_offset per axis.
 template <int N>
 struct SlabRay {
-  vfloat<N> reciprocal[3];
-  vfloat<N> near_offset[3];
-  vfloat<N> far_offset[3];
+  uniform4<N> reciprocal;
+  uniform4<N> near_offset;
+  uniform4<N> far_offset;
   vfloat<N> tmin;
-  /// Where in a node the planes lie that the ray meets first (last) along an axis, in bytes.
-  size_t near_plane[3];
-  size_t far_plane[3];
+  const PlaneOffsets<N>* planes;
 };
 
 /// The axes lie in the lanes. The margin takes S = 1 along the major axis too, where 0 would do.
@@ -150,21 +171,10 @@ inline void set_up_slabs(const ScalarRay& ray, const TreeView& tree, SlabRay<N>&
       (raised - size) * reciprocal_size * broadcast<4>(major_magnitude / major_size);
   const vfloat<4> margin = relative + moved;
   const vfloat<4> product = origin * reciprocal;
-  float reciprocals[4], near_offsets[4], far_offsets[4];
-  store(reciprocals, reciprocal);
-  store(near_offsets, broadcast<4>(0.0f) - product - margin);
-  store(far_offsets, margin - product);
-  const uint32_t backward = sign_bits(direction);
-  for (int axis = 0; axis < 3; ++axis) {
-    out.reciprocal[axis] = broadcast<N>(reciprocals[axis]);
-    out.near_offset[axis] = broadcast<N>(near_offsets[axis]);
-    out.far_offset[axis] = broadcast<N>(far_offsets[axis]);
-    constexpr size_t side = N * sizeof(float);
-    const size_t lower = 2 * static_cast<size_t>(axis) * side;
-    const size_t is_backward = (backward >> axis) & 1u;
-    out.near_plane[axis] = lower + is_backward * side;
-    out.far_plane[axis] = lower + (1 - is_backward) * side;
-  }
+  out.reciprocal = spread<N>(reciprocal);
+  out.near_offset = spread<N>(broadcast<4>(0.0f) - product - margin);
+  out.far_offset = spread<N>(margin - product);
+  out.planes = &kPlaneOffsets<N>[sign_bits(direction) & 7u];
   out.tmin = broadcast<N>(scaled_lower(ray, ray.tmin));
 }
 

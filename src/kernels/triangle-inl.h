@@ -14,22 +14,6 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
 
-template <int N>
-struct ShearRay {
-  vfloat<N> origin_x, origin_y, origin_z;  ///< along kx, ky, kz
-  vfloat<N> shear_x, shear_y, shear_z;
-};
-
-template <int N>
-inline void set_up_shear(const ScalarRay& ray, ShearRay<N>& out) {
-  out.origin_x = broadcast<N>(ray.origin[ray.kx]);
-  out.origin_y = broadcast<N>(ray.origin[ray.ky]);
-  out.origin_z = broadcast<N>(ray.origin[ray.kz]);
-  out.shear_x = broadcast<N>(ray.ratio[ray.kx]);
-  out.shear_y = broadcast<N>(ray.ratio[ray.ky]);
-  out.shear_z = broadcast<N>(ray.shear_z);
-}
-
 /// The three vertices of each lane in the ray's own frame, where the ray is the z axis.
 template <int N>
 struct ShearedBlock {
@@ -62,15 +46,21 @@ inline bool is_inside_exactly(const ShearedBlock<N>& block, int lane) {
 /// == 0 that at least one has to be looked at exactly. A lane whose vertices all lie outside
 /// [nearest, farthest] along the ray is left out: its distance lies between theirs.
 template <int N, typename Probe>
-inline uint32_t test_inside(const LeafBlock<N>& leaf, const ScalarRay& scalar,
-                            const ShearRay<N>& ray, vfloat<N> nearest, vfloat<N> farthest,
-                            uint32_t lanes, ShearedBlock<N>& sheared, Probe& probe) {
+inline uint32_t test_inside(const LeafBlock<N>& leaf, const ScalarRay& ray, vfloat<N> nearest,
+                            vfloat<N> farthest, uint32_t lanes, ShearedBlock<N>& sheared,
+                            Probe& probe) {
+  const vfloat<N> origin_x = broadcast<N>(ray.origin[ray.kx]);
+  const vfloat<N> origin_y = broadcast<N>(ray.origin[ray.ky]);
+  const vfloat<N> origin_z = broadcast<N>(ray.origin[ray.kz]);
+  const vfloat<N> shear_x = broadcast<N>(ray.ratio[ray.kx]);
+  const vfloat<N> shear_y = broadcast<N>(ray.ratio[ray.ky]);
+  const vfloat<N> shear_z = broadcast<N>(ray.shear_z);
   vfloat<N> x[3], y[3], z[3];
   for (int k = 0; k < 3; ++k) {
-    const vfloat<N> along = load<N>(leaf.position[k][scalar.kz]) - ray.origin_z;
-    x[k] = (load<N>(leaf.position[k][scalar.kx]) - ray.origin_x) - ray.shear_x * along;
-    y[k] = (load<N>(leaf.position[k][scalar.ky]) - ray.origin_y) - ray.shear_y * along;
-    z[k] = ray.shear_z * along;
+    const vfloat<N> along = load<N>(leaf.position[k][ray.kz]) - origin_z;
+    x[k] = (load<N>(leaf.position[k][ray.kx]) - origin_x) - shear_x * along;
+    y[k] = (load<N>(leaf.position[k][ray.ky]) - origin_y) - shear_y * along;
+    z[k] = shear_z * along;
   }
   const vfloat<N> u = x[2] * y[1] - y[2] * x[1];
   const vfloat<N> v = x[0] * y[2] - y[0] * x[2];

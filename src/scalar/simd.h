@@ -3,6 +3,7 @@
 //
 //   vfloat<N>      N floats: load, store, + - *, min, max, multiply_add, comparisons to bit masks
 //   vfloat<4>      also /, absolute, copy_sign, sign_bits: for the set-up of a ray
+//   uniform4<N>    4 floats, each to be read as a vector of equal lanes, many times
 //   vdouble4       4 doubles, read from and written to floats
 //
 // min and max return their second operand where a lane is NaN or the two are equal, as the SSE
@@ -93,6 +94,19 @@ inline vfloat<4> copy_sign(vfloat<4> magnitude, vfloat<4> sign) {
 }
 inline uint32_t sign_bits(vfloat<4> a) {
   return mask_of<4>([&](int i) { return __builtin_signbit(a.lane[i]) != 0; });
+}
+
+template <int N>
+struct uniform4 {
+  float lane[4];
+
+  vfloat<N> operator[](int i) const { return broadcast<N>(lane[i]); }
+};
+template <int N>
+inline uniform4<N> spread(vfloat<4> a) {
+  uniform4<N> result;
+  store(result.lane, a);
+  return result;
 }
 
 struct vdouble4 {
