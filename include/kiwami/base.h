@@ -55,11 +55,11 @@ enum {
   KIWAMI_ERROR_INVALID_ARGUMENT = -1, /* an argument is outside what its description allows */
   KIWAMI_ERROR_INVALID_STATE = -2,    /* the call does not fit the object's state (not committed) */
   KIWAMI_ERROR_OUT_OF_MEMORY = -3,    /* an allocation failed; the objects stay as they were */
-  KIWAMI_ERROR_UNSUPPORTED_ISA = -4,  /* the CPU, its operating system or this build lacks the ISA */
-  KIWAMI_ERROR_TOO_LARGE = -5,        /* the input exceeds a documented limit of the library */
-  KIWAMI_ERROR_CALLBACK = -6,         /* a callback of the caller reported failure */
-  KIWAMI_ERROR_VALIDATION = -7,       /* a tree breaks one of its invariants (validator calls) */
-  KIWAMI_ERROR_INTERNAL = -8          /* a defect of the library; please report it */
+  KIWAMI_ERROR_UNSUPPORTED_ISA = -4, /* the CPU, its operating system or this build lacks the ISA */
+  KIWAMI_ERROR_TOO_LARGE = -5,       /* the input exceeds a documented limit of the library */
+  KIWAMI_ERROR_CALLBACK = -6,        /* a callback of the caller reported failure */
+  KIWAMI_ERROR_VALIDATION = -7,      /* a tree breaks one of its invariants (validator calls) */
+  KIWAMI_ERROR_INTERNAL = -8         /* a defect of the library; please report it */
 };
 
 /* See device.h. */

@@ -11,8 +11,8 @@
 extern "C" {
 #endif
 
-/* kiwami_device, declared in base.h, is a reference-counted handle. Geometries and scenes hold their
- * device, so a device may be released as soon as nothing new is to be made from it. */
+/* kiwami_device, declared in base.h, is a reference-counted handle. Geometries and scenes hold
+ * their device, so a device may be released as soon as nothing new is to be made from it. */
 
 /* Instruction sets. On processors other than x86, KIWAMI_ISA_SSE names the 4-wide kernels built
  * for that processor's own vectors. Results are equal to the bit on all of them. */
@@ -60,9 +60,9 @@ typedef struct kiwami_device_desc {
   uint32_t flags;        /* KIWAMI_DEVICE_* */
   kiwami_parallel_runner runner; /* NULL: the library's own tasks */
   void* runner_user;
-  uint32_t runner_width;     /* how many tasks the runner runs at once (a hint); 0: unknown */
-  uint32_t reserved;         /* 0 */
-  kiwami_allocate allocate;  /* NULL: the C++ runtime's; set both or none */
+  uint32_t runner_width;    /* how many tasks the runner runs at once (a hint); 0: unknown */
+  uint32_t reserved;        /* 0 */
+  kiwami_allocate allocate; /* NULL: the C++ runtime's; set both or none */
   kiwami_deallocate deallocate;
   void* allocator_user;
   kiwami_log log; /* NULL: silence */

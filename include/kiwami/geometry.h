@@ -27,16 +27,16 @@ enum {
  * A triangle with a vertex that is NaN, infinite or beyond KIWAMI_MAX_COORDINATE is skipped: it is
  * never hit, and the others keep their numbers. */
 typedef struct kiwami_triangle_mesh_desc {
-  uint32_t struct_size;  /* bytes of this struct, set by kiwami_triangle_mesh_desc_init */
-  uint32_t flags;        /* KIWAMI_MESH_* */
-  const void* vertices;  /* three floats a vertex; may be NULL when vertex_count is 0 */
-  uint64_t vertex_offset; /* bytes before the first vertex */
-  uint64_t vertex_stride; /* bytes from one vertex to the next, at least 12; 0: 12 */
-  uint64_t vertex_count;  /* at most 2^32 - 1 */
-  const void* indices;   /* three uint32 a triangle, each below vertex_count; NULL: triangle i is
-                          * made of the vertices 3i, 3i + 1, 3i + 2 */
-  uint64_t index_offset;  /* bytes before the first index */
-  uint64_t index_stride;  /* bytes from one triangle to the next, at least 12; 0: 12 */
+  uint32_t struct_size;    /* bytes of this struct, set by kiwami_triangle_mesh_desc_init */
+  uint32_t flags;          /* KIWAMI_MESH_* */
+  const void* vertices;    /* three floats a vertex; may be NULL when vertex_count is 0 */
+  uint64_t vertex_offset;  /* bytes before the first vertex */
+  uint64_t vertex_stride;  /* bytes from one vertex to the next, at least 12; 0: 12 */
+  uint64_t vertex_count;   /* at most 2^32 - 1 */
+  const void* indices;     /* three uint32 a triangle, each below vertex_count; NULL: triangle i is
+                            * made of the vertices 3i, 3i + 1, 3i + 2 */
+  uint64_t index_offset;   /* bytes before the first index */
+  uint64_t index_stride;   /* bytes from one triangle to the next, at least 12; 0: 12 */
   uint64_t triangle_count; /* at most 2^31 - 1 */
   uint32_t mask;           /* a ray meets the mesh only if (ray.mask & mask) != 0; all ones */
   uint32_t reserved;       /* 0 */

@@ -23,7 +23,9 @@ enum {
   KIWAMI_PARAMETER_MAX_LEAF_SIZE = 5,  /* triangles a leaf, 1 to 16; 0: one full leaf block */
   KIWAMI_PARAMETER_NODE_COST = 6,      /* cost of visiting a node, 0.01 to 100 */
   KIWAMI_PARAMETER_LEAF_COST = 7,      /* cost of testing a leaf block, 0.01 to 100 */
-  KIWAMI_PARAMETER_VALIDATE_BUILD = 8  /* 1: commit runs the validator after each stage; 0 */
+  KIWAMI_PARAMETER_VALIDATE_BUILD = 8, /* 1: commit runs the validator after each stage; 0 */
+  KIWAMI_PARAMETER_CONTRACTION = 9     /* from binary to wide nodes: 0: by surface area; 1: of least
+                                        * cost (slower to build) */
 };
 
 /* What a committed scene is made of. Counts are of the acceleration structure. */

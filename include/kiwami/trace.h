@@ -44,12 +44,12 @@ typedef struct kiwami_ray {
 /* The answer to a ray. 36 bytes, at any address. A miss has t = +inf, ids of KIWAMI_INVALID_ID and
  * zeros elsewhere. */
 typedef struct kiwami_hit {
-  float t;                           /* distance in units of the direction's length */
-  float u, v;                        /* the point is (1 - u - v) a + u b + v c */
+  float t;                            /* distance in units of the direction's length */
+  float u, v;                         /* the point is (1 - u - v) a + u b + v c */
   float normal_x, normal_y, normal_z; /* (b - a) x (c - a), not normalised */
-  uint32_t primitive_id;             /* the triangle's number in its mesh */
-  uint32_t geometry_id;              /* the mesh's number in its scene */
-  uint32_t instance_id;              /* KIWAMI_INVALID_ID outside instances */
+  uint32_t primitive_id;              /* the triangle's number in its mesh */
+  uint32_t geometry_id;               /* the mesh's number in its scene */
+  uint32_t instance_id;               /* KIWAMI_INVALID_ID outside instances */
 } kiwami_hit;
 
 /* One field of an array of rays: element i is at data + i * stride. A stride of 0 gives all rays
@@ -73,19 +73,19 @@ typedef struct kiwami_ray_fields {
   uint32_t reserved;    /* 0 */
   kiwami_input_field origin_x, origin_y, origin_z;          /* float */
   kiwami_input_field direction_x, direction_y, direction_z; /* float */
-  kiwami_input_field tmin;  /* float; data NULL: 0 */
-  kiwami_input_field tmax;  /* float; data NULL: +inf */
-  kiwami_input_field time;  /* float; data NULL: 0 */
-  kiwami_input_field mask;  /* uint32; data NULL: all ones */
-  kiwami_input_field flags; /* uint32; data NULL: 0 */
+  kiwami_input_field tmin;                                  /* float; data NULL: 0 */
+  kiwami_input_field tmax;                                  /* float; data NULL: +inf */
+  kiwami_input_field time;                                  /* float; data NULL: 0 */
+  kiwami_input_field mask;                                  /* uint32; data NULL: all ones */
+  kiwami_input_field flags;                                 /* uint32; data NULL: 0 */
 } kiwami_ray_fields;
 
 /* Answers whose fields go apart; each may be left out. */
 typedef struct kiwami_hit_fields {
-  uint32_t struct_size; /* bytes of this struct, set by kiwami_hit_fields_init */
-  uint32_t reserved;    /* 0 */
-  kiwami_output_field t, u, v;                         /* float */
-  kiwami_output_field normal_x, normal_y, normal_z;    /* float */
+  uint32_t struct_size;        /* bytes of this struct, set by kiwami_hit_fields_init */
+  uint32_t reserved;           /* 0 */
+  kiwami_output_field t, u, v; /* float */
+  kiwami_output_field normal_x, normal_y, normal_z;           /* float */
   kiwami_output_field primitive_id, geometry_id, instance_id; /* uint32 */
 } kiwami_hit_fields;
 
@@ -119,9 +119,8 @@ KIWAMI_API kiwami_result kiwami_query_init(kiwami_query* query, size_t size);
  *               INVALID_ARGUMENT: NULL, a stride too small, an extent that overflows.
  * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_closest_hit(const kiwami_scene* scene, const kiwami_ray* rays,
-                                            size_t ray_stride, kiwami_hit* hits,
-                                            size_t hit_stride, size_t count,
-                                            const kiwami_query* query);
+                                            size_t ray_stride, kiwami_hit* hits, size_t hit_stride,
+                                            size_t count, const kiwami_query* query);
 
 /* Finds out of each ray whether it has a hit.
  *   occluded    receives count bytes, stride bytes apart (0: 1): 1 for a hit, 0 for none

@@ -30,7 +30,8 @@ class Parallel {
   template <typename Body>
   void for_each(size_t count, Body&& body) const {
     using Callable = std::remove_reference_t<Body>;
-    run(count, [](void* data, size_t index) { (*static_cast<Callable*>(data))(index); },
+    run(
+        count, [](void* data, size_t index) { (*static_cast<Callable*>(data))(index); },
         const_cast<void*>(static_cast<const void*>(&body)));
   }
 

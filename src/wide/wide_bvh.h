@@ -15,7 +15,8 @@ namespace kiwami {
 constexpr uint32_t kLeafFlag = 0x80000000u;
 
 /// N child boxes, relative to the tree's centre and rounded outwards, by axis: bounds[axis][0] are
-/// the lower, bounds[axis][1] the upper ones. An unused slot is in no mask; its box is [+max, -max].
+/// the lower, bounds[axis][1] the upper ones. An unused slot is in no mask; its box is [+max,
+/// -max].
 template <int N>
 struct alignas(64) WideNode {
   float bounds[3][2][N];
@@ -45,19 +46,19 @@ constexpr uint32_t kMaxWideDepth = 72;
 
 /// What a kernel needs of a tree. Plain data: it crosses from baseline to ISA code.
 struct TreeView {
-  const void* nodes;      ///< WideNode<N>[]
-  const void* leaves;     ///< LeafBlock<N>[]
-  uint32_t root;          ///< a child reference
-  uint32_t root_mask;     ///< 0: nothing to hit
-  Vec3f centre;           ///< boxes are relative to it
-  float centre_padding;   ///< 0; four floats are read at once
-  Vec3f greatest_bound;   ///< per axis, the greatest absolute box coordinate in the stored frame
-  float bound_padding;    ///< 0
+  const void* nodes;     ///< WideNode<N>[]
+  const void* leaves;    ///< LeafBlock<N>[]
+  uint32_t root;         ///< a child reference
+  uint32_t root_mask;    ///< 0: nothing to hit
+  Vec3f centre;          ///< boxes are relative to it
+  float centre_padding;  ///< 0; four floats are read at once
+  Vec3f greatest_bound;  ///< per axis, the greatest absolute box coordinate in the stored frame
+  float bound_padding;   ///< 0
 };
 
 /// Maps a running triangle id to its geometry. Plain data.
 struct GeometryRange {
-  uint32_t first_id;     ///< id of the geometry's primitive 0
+  uint32_t first_id;  ///< id of the geometry's primitive 0
   uint32_t geometry_id;
   uint32_t mask;
 };
@@ -67,7 +68,7 @@ struct SceneView {
   TreeView tree;
   const GeometryRange* ranges;  ///< by first_id, rising
   uint32_t range_count;
-  uint32_t has_masks;           ///< 0: every geometry's mask is all ones
+  uint32_t has_masks;  ///< 0: every geometry's mask is all ones
 };
 
 }  // namespace kiwami
