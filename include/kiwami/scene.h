@@ -24,8 +24,8 @@ enum {
   KIWAMI_PARAMETER_NODE_COST = 6,      /* cost of visiting a node, 0.01 to 100 */
   KIWAMI_PARAMETER_LEAF_COST = 7,      /* cost of testing a leaf block, 0.01 to 100 */
   KIWAMI_PARAMETER_VALIDATE_BUILD = 8, /* 1: commit runs the validator after each stage; 0 */
-  KIWAMI_PARAMETER_CONTRACTION = 9     /* from binary to wide nodes: 0: by surface area; 1: of least
-                                        * cost (slower to build) */
+  KIWAMI_PARAMETER_CONTRACTION = 9     /* how nodes of two children become wide: 0: the largest is
+                                        * opened first; 1: at the least cost of the whole tree */
 };
 
 /* What a committed scene is made of. Counts are of the acceleration structure. */

@@ -44,4 +44,22 @@ struct BinaryBvh {
   static constexpr uint32_t kMaxDepth = 72;
 };
 
+/// Calls visit(leaf) for each leaf at and below a node, from left to right.
+template <typename Visit>
+void for_each_leaf(const BinaryBvh& bvh, uint32_t node, Visit&& visit) {
+  // Each step down pushes two and pops one.
+  uint32_t stack[BinaryBvh::kMaxDepth + 1];
+  uint32_t size = 0;
+  stack[size++] = node;
+  while (size != 0) {
+    const BinaryNode& top = bvh.nodes[stack[--size]];
+    if (top.is_leaf()) {
+      visit(top);
+    } else {
+      stack[size++] = top.first + 1;
+      stack[size++] = top.first;
+    }
+  }
+}
+
 }  // namespace kiwami

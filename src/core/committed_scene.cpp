@@ -23,11 +23,24 @@ uint32_t width_of(const SceneParameters& parameters, const Device& device) {
   return width != 0 ? width : default_width_of(device.isa());
 }
 
+ContractionMethod contraction_of(const SceneParameters& parameters) {
+  return static_cast<ContractionMethod>(parameters.whole(KIWAMI_PARAMETER_CONTRACTION));
+}
+
+uint32_t leaf_size_of(const SceneParameters& parameters, uint32_t width) {
+  const uint32_t leaf_size = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
+  return leaf_size != 0 ? std::min(leaf_size, width) : width;
+}
+
 BinnedSahBuilder::Config builder_config(const SceneParameters& parameters, uint32_t width) {
   BinnedSahBuilder::Config config;
-  const uint32_t leaf_size = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
   config.bin_count = parameters.whole(KIWAMI_PARAMETER_BIN_COUNT);
-  config.max_leaf_size = leaf_size != 0 ? std::min(leaf_size, width) : width;
+  config.max_leaf_size = leaf_size_of(parameters, width);
+  // The optimal contraction collapses small subtrees to leaves itself. Leaves of half the size
+  // leave it nearly all of the choice, for a small part of the time that single triangles take.
+  if (contraction_of(parameters) == ContractionMethod::kOptimal) {
+    config.max_leaf_size = (config.max_leaf_size + 1) / 2;
+  }
   config.block_size = width;
   config.node_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_NODE_COST]);
   config.leaf_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_LEAF_COST]);
@@ -37,6 +50,8 @@ BinnedSahBuilder::Config builder_config(const SceneParameters& parameters, uint3
 WideTreeConfig wide_config(const SceneParameters& parameters, uint32_t width) {
   WideTreeConfig config;
   config.width = width;
+  config.contraction = contraction_of(parameters);
+  config.max_leaf_size = leaf_size_of(parameters, width);
   config.merge_leaves = parameters.whole(KIWAMI_PARAMETER_MERGE_LEAVES) != 0;
   config.merge_ring = parameters.whole(KIWAMI_PARAMETER_MERGE_RING);
   config.node_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_NODE_COST]);

@@ -7,7 +7,7 @@ namespace kiwami {
 
 namespace {
 
-constexpr uint32_t kLastParameter = KIWAMI_PARAMETER_VALIDATE_BUILD;
+constexpr uint32_t kLastParameter = KIWAMI_PARAMETER_CONTRACTION;
 
 /// By number; number 0 names nothing.
 constexpr ParameterBounds kBounds[kLastParameter + 1] = {
@@ -19,6 +19,7 @@ constexpr ParameterBounds kBounds[kLastParameter + 1] = {
     {0.01, 100.0, 1.0, false},                    // NODE_COST
     {0.01, 100.0, 1.0, false},                    // LEAF_COST
     {0, 1, 0, true},                              // VALIDATE_BUILD
+    {0, 1, 1, true},                              // CONTRACTION
 };
 
 bool is_whole(double value) {

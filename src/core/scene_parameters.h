@@ -29,7 +29,7 @@ class SceneParameters {
   uint32_t whole(uint32_t parameter) const { return static_cast<uint32_t>(values_[parameter]); }
 
  private:
-  double values_[KIWAMI_PARAMETER_VALIDATE_BUILD + 1];
+  double values_[KIWAMI_PARAMETER_CONTRACTION + 1];
 };
 
 }  // namespace kiwami

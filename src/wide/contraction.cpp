@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "wide/contraction_walk.h"
+
 namespace kiwami {
 namespace {
-
-constexpr uint32_t kMaxWidth = 16;
 
 /// The slots of the node that is being made, in the order of the binary tree's leaves.
 class SlotList {
@@ -23,7 +23,7 @@ class SlotList {
   }
 
   uint32_t size() const { return size_; }
-  uint32_t operator[](uint32_t slot) const { return node_[slot]; }
+  ChosenSlot operator[](uint32_t slot) const { return {node_[slot], area_[slot] < 0.0f}; }
 
  private:
   void open(uint32_t slot) {
@@ -47,74 +47,30 @@ class SlotList {
 
   const BinaryBvh& binary_;
   uint32_t size_ = 0;
-  uint32_t node_[kMaxWidth];
-  float area_[kMaxWidth];  ///< negative: a leaf, which cannot be opened
+  uint32_t node_[kMaxContractionWidth];
+  float area_[kMaxContractionWidth];  ///< negative: a leaf, which cannot be opened
 };
 
-/// The walk that makes all nodes.
-class Contractor {
- public:
-  Contractor(const BinaryBvh& binary, uint32_t width, Memory& memory)
-      : binary_(binary), width_(width), nodes_(memory), slots_(memory), pending_(memory) {}
+/// Children by surface area.
+struct SurfaceAreaChooser {
+  const BinaryBvh& binary;
+  uint32_t width;
 
-  Contraction run() {
-    add_slot(0, 1);
-    while (!pending_.empty()) {
-      const Pending pending = pending_.back();
-      pending_.pop_back();
-      expand(pending);
-    }
-    result_.nodes = nodes_.take();
-    result_.slots = slots_.take();
-    return std::move(result_);
+  uint32_t choose(uint32_t binary_node, ChosenSlot* chosen) const {
+    SlotList list(binary, binary_node);
+    list.open_until(width);
+    for (uint32_t i = 0; i < list.size(); ++i) chosen[i] = list[i];
+    return list.size();
   }
-
- private:
-  /// A contracted node that has its index but not yet its slots.
-  struct Pending {
-    uint32_t node, binary_node, depth;
-  };
-
-  void expand(const Pending& pending) {
-    result_.depth = std::max(result_.depth, pending.depth);
-    SlotList list(binary_, pending.binary_node);
-    list.open_until(width_);
-    nodes_[pending.node] = {static_cast<uint32_t>(slots_.size()), list.size()};
-    const size_t first_pending = pending_.size();
-    for (uint32_t slot = 0; slot < list.size(); ++slot) add_slot(list[slot], pending.depth + 1);
-    // The stack hands out the last first: the first child's subtree is to come next.
-    for (size_t low = first_pending, high = pending_.size(); low + 1 < high; ++low) {
-      std::swap(pending_[low], pending_[--high]);
-    }
-  }
-
-  void add_slot(uint32_t binary_index, uint32_t depth) {
-    const BinaryNode& node = binary_.nodes[binary_index];
-    const double area = node.bounds.half_area();
-    if (node.is_leaf()) {
-      result_.leaf_area += area;
-      slots_.push_back({binary_index, kLeafFlag | result_.leaf_count++});
-      return;
-    }
-    result_.node_area += area;
-    const uint32_t index = static_cast<uint32_t>(nodes_.size());
-    nodes_.push_back({0, 0});
-    slots_.push_back({binary_index, index});
-    pending_.push_back({index, binary_index, depth});
-  }
-
-  const BinaryBvh& binary_;
-  uint32_t width_;
-  GrowingArray<ContractedNode> nodes_;
-  GrowingArray<ContractedSlot> slots_;
-  GrowingArray<Pending> pending_;
-  Contraction result_;
 };
 
 }  // namespace
 
-Contraction contract(const BinaryBvh& binary, uint32_t width, Memory& memory) {
-  return Contractor(binary, width, memory).run();
+Contraction contract(const BinaryBvh& binary, uint32_t width, Memory& memory,
+                     const Parallel& parallel) {
+  const SurfaceAreaChooser chooser{binary, width};
+  ParallelContraction contraction(binary, chooser, memory, parallel);
+  return contraction.run({0, binary.nodes[0].is_leaf()});
 }
 
 }  // namespace kiwami

@@ -10,6 +10,7 @@
 #include "math/rounding.h"
 #include "wide/contraction.h"
 #include "wide/leaf_merging.h"
+#include "wide/optimal_contraction.h"
 
 namespace kiwami {
 namespace {
@@ -29,25 +30,32 @@ SharedPlaces place(const Array<uint8_t>& sizes, const WideTreeConfig& config, Me
                              : place_alone(sizes, memory);
 }
 
-Layout make_layout(const BinaryBvh& binary, const WideTreeConfig& config, Memory& memory) {
-  Layout layout{contract(binary, config.width, memory), {}, {}};
-  const Contraction& contraction = layout.contraction;
-  Array<uint8_t> node_sizes(memory, contraction.nodes.size());
-  for (size_t i = 0; i < node_sizes.size(); ++i) {
-    node_sizes[i] = static_cast<uint8_t>(contraction.nodes[i].slot_count);
+Contraction contract_by(const BinaryBvh& binary, const WideTreeConfig& config, Memory& memory,
+                        const Parallel& parallel) {
+  if (config.contraction == ContractionMethod::kSurfaceArea) {
+    return contract(binary, config.width, memory, parallel);
   }
-  Array<uint8_t> leaf_sizes(memory, contraction.leaf_count);
-  for (const ContractedSlot& slot : contraction.slots) {
-    if (!slot.is_leaf()) continue;
-    const BinaryNode& leaf = binary.nodes[slot.binary_node];
-    if (leaf.count > config.width) {
-      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "leaf %u owns %u triangles, expected at most %u",
-                  slot.binary_node, leaf.count, config.width);
-    }
-    leaf_sizes[slot.child & ~kLeafFlag] = static_cast<uint8_t>(leaf.count);
+  const OptimalContractionConfig optimal = {config.width,
+                                            std::min(config.max_leaf_size, config.width),
+                                            config.node_cost, config.leaf_cost};
+  return contract_optimally(binary, optimal, memory, parallel);
+}
+
+Layout make_layout(const BinaryBvh& binary, const WideTreeConfig& config, Memory& memory,
+                   const Parallel& parallel) {
+  Layout layout{contract_by(binary, config, memory, parallel), {}, {}};
+  for (const uint8_t size : layout.contraction.leaf_sizes) {
+    if (size <= config.width) continue;
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "a leaf owns %u triangles, expected at most %u",
+                size, config.width);
+  }
+  const Array<ContractedNode>& nodes = layout.contraction.nodes;
+  Array<uint8_t> node_sizes(memory, nodes.size());
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    node_sizes[i] = static_cast<uint8_t>(nodes[i].slot_count);
   }
   layout.nodes = place(node_sizes, config, memory);
-  layout.leaves = place(leaf_sizes, config, memory);
+  layout.leaves = place(layout.contraction.leaf_sizes, config, memory);
   return layout;
 }
 
@@ -122,20 +130,24 @@ class Packer {
 
   void pack_leaf(const ContractedSlot& slot) {
     const SharedPlace& place = layout_.leaves.places[slot.child & ~kLeafFlag];
-    const BinaryNode& leaf = binary_.nodes[slot.binary_node];
     LeafBlock<N>& block = leaves_[place.index];
-    for (uint32_t i = 0; i < leaf.count; ++i) {
-      const uint32_t id = binary_.primitive_ids[leaf.first + i];
-      const uint32_t lane = place.first + i;
-      Vec3f corner[3];
-      source_.corners_of(id, corner);
-      for (int vertex = 0; vertex < 3; ++vertex) {
-        for (int axis = 0; axis < 3; ++axis) {
-          block.position[vertex][axis][lane] = corner[vertex][axis];
-        }
+    uint32_t lane = place.first;
+    for_each_leaf(binary_, slot.binary_node, [&](const BinaryNode& leaf) {
+      for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+        pack_triangle(binary_.primitive_ids[i], block, lane++);
       }
-      block.id[lane] = id;
+    });
+  }
+
+  void pack_triangle(uint32_t id, LeafBlock<N>& block, uint32_t lane) {
+    Vec3f corner[3];
+    source_.corners_of(id, corner);
+    for (int vertex = 0; vertex < 3; ++vertex) {
+      for (int axis = 0; axis < 3; ++axis) {
+        block.position[vertex][axis][lane] = corner[vertex][axis];
+      }
     }
+    block.id[lane] = id;
   }
 
   const BinaryBvh& binary_;
@@ -175,7 +187,7 @@ double sah_cost_of(const Contraction& contraction, double root_area, const WideT
   // Points and lines have no area: there, each node is as likely to be met as the root.
   if (!(root_area > 0.0)) {
     return config.node_cost * static_cast<double>(contraction.nodes.size()) +
-           config.leaf_cost * static_cast<double>(contraction.leaf_count);
+           config.leaf_cost * static_cast<double>(contraction.leaf_sizes.size());
   }
   return (config.node_cost * contraction.node_area + config.leaf_cost * contraction.leaf_area) /
          root_area;
@@ -195,7 +207,7 @@ WideTree build_wide_tree(const BinaryBvh& binary, const TriangleSource& source,
     tree.leaves = Array<unsigned char>(memory, 0);
     return tree;
   }
-  const Layout layout = make_layout(binary, config, memory);
+  const Layout layout = make_layout(binary, config, memory, parallel);
   const Contraction& contraction = layout.contraction;
   const Bounds& root_box = binary.nodes[0].bounds;
   tree.view = make_view(root_box, layout);

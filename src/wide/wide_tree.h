@@ -24,8 +24,13 @@ struct WideTree {
   double sah_cost = 0.0;    ///< relative to the root box
 };
 
+/// How the children of a wide node are chosen; the numbers of KIWAMI_PARAMETER_CONTRACTION.
+enum class ContractionMethod : uint32_t { kSurfaceArea = 0, kOptimal = 1 };
+
 struct WideTreeConfig {
   uint32_t width = 8;
+  ContractionMethod contraction = ContractionMethod::kSurfaceArea;
+  uint32_t max_leaf_size = 8;  ///< of leaves that the optimal contraction makes
   bool merge_leaves = true;
   uint32_t merge_ring = 8;
   float node_cost = 1.0f;

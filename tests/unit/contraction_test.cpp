@@ -30,6 +30,7 @@ class ContractionTest : public testing::Test {
   }
 
   kiwami::Memory memory_;
+  Threads one_thread_{1};
 };
 
 std::set<uint32_t> leaves_of(const BinaryBvh& bvh) {
@@ -61,7 +62,7 @@ void check(const BinaryBvh& bvh, const Contraction& contraction, uint32_t width)
     leaves.insert(slot.binary_node);
   }
   EXPECT_EQ(leaves, leaves_of(bvh));
-  EXPECT_EQ(contraction.leaf_count, leaves.size());
+  EXPECT_EQ(contraction.leaf_sizes.size(), leaves.size());
   EXPECT_EQ(children.size(), contraction.nodes.size());
   for (uint32_t i = 0; i < contraction.nodes.size(); ++i) {
     const ContractedNode& node = contraction.nodes[i];
@@ -83,7 +84,7 @@ TEST_F(ContractionTest, KeepsLeavesWidthAndOrder) {
       const BinaryBvh bvh = build(mesh, leaf_size);
       for (const uint32_t width : {2u, 3u, 4u, 8u, 16u}) {
         SCOPED_TRACE("width " + std::to_string(width));
-        check(bvh, kiwami::contract(bvh, width, memory_), width);
+        check(bvh, kiwami::contract(bvh, width, memory_, one_thread_), width);
       }
     }
   }
@@ -91,17 +92,17 @@ TEST_F(ContractionTest, KeepsLeavesWidthAndOrder) {
 
 TEST_F(ContractionTest, WidthTwoIsTheBinaryTree) {
   const BinaryBvh bvh = build(soup(1000, seed()), 4);
-  const Contraction contraction = kiwami::contract(bvh, 2, memory_);
-  EXPECT_EQ(contraction.nodes.size() + contraction.leaf_count, bvh.nodes.size());
+  const Contraction contraction = kiwami::contract(bvh, 2, memory_, one_thread_);
+  EXPECT_EQ(contraction.nodes.size() + contraction.leaf_sizes.size(), bvh.nodes.size());
   EXPECT_NEAR(contraction.node_area, area_of(bvh, false), 1e-9 * contraction.node_area);
   EXPECT_NEAR(contraction.leaf_area, area_of(bvh, true), 1e-9 * contraction.leaf_area);
 }
 
 TEST_F(ContractionTest, WiderNodesHaveLessAreaAndDepth) {
   const BinaryBvh bvh = build(spheres(5000, seed()), 1);
-  Contraction last = kiwami::contract(bvh, 2, memory_);
+  Contraction last = kiwami::contract(bvh, 2, memory_, one_thread_);
   for (const uint32_t width : {4u, 8u, 16u}) {
-    Contraction wider = kiwami::contract(bvh, width, memory_);
+    Contraction wider = kiwami::contract(bvh, width, memory_, one_thread_);
     EXPECT_LT(wider.node_area, last.node_area);
     EXPECT_LT(wider.depth, last.depth);
     EXPECT_EQ(wider.leaf_area, last.leaf_area);
@@ -120,7 +121,7 @@ TEST_F(ContractionTest, OpensTheChildOfLargestArea) {
   bvh.nodes[4] = {{{1, 0, 0}, {2, 1, 1}}, 1, 1};
   bvh.nodes[5] = {{{2, 0, 0}, {5, 1, 1}}, 2, 1};
   bvh.nodes[6] = {{{5, 0, 0}, {9, 1, 1}}, 3, 1};
-  const Contraction contraction = kiwami::contract(bvh, 3, memory_);
+  const Contraction contraction = kiwami::contract(bvh, 3, memory_, one_thread_);
   ASSERT_EQ(contraction.nodes.size(), 2u);
   ASSERT_EQ(contraction.slots.size(), 6u);
   const uint32_t expected[] = {0, 1, 5, 6, 3, 4};
@@ -131,7 +132,7 @@ TEST_F(ContractionTest, OpensTheChildOfLargestArea) {
 
 TEST_F(ContractionTest, ARootThatIsALeafHasNoNodes) {
   const BinaryBvh bvh = build(soup(3, seed()), 8);
-  const Contraction contraction = kiwami::contract(bvh, 8, memory_);
+  const Contraction contraction = kiwami::contract(bvh, 8, memory_, one_thread_);
   EXPECT_TRUE(contraction.nodes.empty());
   ASSERT_EQ(contraction.slots.size(), 1u);
   EXPECT_TRUE(contraction.slots[0].is_leaf());
