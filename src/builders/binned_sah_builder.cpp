@@ -20,23 +20,29 @@ struct OpenNode {
   uint32_t count() const { return end - begin; }
 };
 
-/// The two buffers between which stable partitions go back and forth.
-struct PrimitiveBuffers {
-  BuildPrimitive* buffer[2];
-};
-
-/// One thread's part: the whole tree below one node, in nodes numbered from 0.
+/// One thread's part: the whole tree below one node, in nodes numbered from 0. Its primitives stand
+/// in memory of its own, of a size that caches hold: stable partitions go back and forth between
+/// two buffers.
 class SubtreeBuilder {
  public:
-  SubtreeBuilder(const Config& config, const PrimitiveBuffers& buffers, uint32_t* primitive_ids,
-                 BinaryNode* nodes)
-      : config_(config), buffers_(buffers), primitive_ids_(primitive_ids), nodes_(nodes) {}
+  SubtreeBuilder(const Config& config, const OpenNode& open, Memory& memory)
+      : config_(config),
+        open_(open),
+        buffers_{Array<BuildPrimitive>(memory, open.count()),
+                 Array<BuildPrimitive>(memory, open.count())},
+        nodes_(memory, size_t{2} * open.count()) {}
 
-  /// Builds the node itself into top, all below it into nodes; returns their number.
-  uint32_t build(const OpenNode& open, int side, BinaryNode& top) {
-    grow(open.bounds, open.begin, open.end, open.depth, side, top);
-    return node_count_;
+  /// Builds the tree over the primitives that order names: the node itself into top, all below it
+  /// into nodes(). Writes the ids of the node's primitives, which may stand where order stands.
+  void build(const BuildPrimitive* primitives, const uint32_t* order, uint32_t* ids,
+             BinaryNode& top) {
+    for (uint32_t i = 0; i < open_.count(); ++i) buffers_[0][i] = primitives[order[i]];
+    ids_ = ids;
+    grow(open_.bounds, 0, open_.count(), open_.depth, 0, top);
   }
+
+  const BinaryNode* nodes() const { return nodes_.data(); }
+  uint32_t node_count() const { return node_count_; }
 
  private:
   void grow(const RangeBounds& bounds, uint32_t begin, uint32_t end, uint32_t depth, int side,
@@ -65,14 +71,15 @@ class SubtreeBuilder {
     if (decide_without_bins(count, depth, config_, decision)) return decision;
     mapping_ = BinMapping(bounds.centroids, BinnedSahBuilder::bins_of(count, config_));
     bins_.clear(mapping_.bin_count);
-    bins_.add(buffers_.buffer[side] + begin, buffers_.buffer[side] + end, mapping_);
+    const BuildPrimitive* from = buffers_[side].data();
+    for (uint32_t i = begin; i < end; ++i) bins_.add(from[i], mapping_);
     return decide_by_bins(bins_, mapping_, bounds, count, config_);
   }
 
   void partition(const SplitDecision& decision, uint32_t begin, uint32_t end, int side,
                  RangeBounds child[2]) {
-    const BuildPrimitive* from = buffers_.buffer[side];
-    BuildPrimitive* to = buffers_.buffer[1 - side];
+    const BuildPrimitive* from = buffers_[side].data();
+    BuildPrimitive* to = buffers_[1 - side].data();
     child[0] = child[1] = RangeBounds::empty();
     uint32_t cursor[2] = {begin, begin + decision.left_count};
     if (decision.kind == SplitDecision::kIndex) {
@@ -91,19 +98,17 @@ class SubtreeBuilder {
   }
 
   void make_leaf(uint32_t begin, uint32_t end, int side, BinaryNode& node) {
-    const BuildPrimitive* from = buffers_.buffer[side];
-    node.first = begin;
+    node.first = open_.begin + begin;
     node.count = end - begin;
-    for (uint32_t i = begin; i < end; ++i) {
-      primitive_ids_[i] = from[i].id;
-      if (side != 0) buffers_.buffer[0][i] = from[i];
-    }
+    for (uint32_t i = begin; i < end; ++i) ids_[i] = buffers_[side][i].id;
   }
 
   const Config& config_;
-  PrimitiveBuffers buffers_;
-  uint32_t* primitive_ids_;
-  BinaryNode* nodes_;
+  const OpenNode& open_;
+  Array<BuildPrimitive> buffers_[2];
+  // A tree of n primitives has at most 2n - 2 nodes below its root.
+  Array<BinaryNode> nodes_;
+  uint32_t* ids_ = nullptr;
   uint32_t node_count_ = 0;
   BinMapping mapping_;
   SahBins bins_;
@@ -131,45 +136,51 @@ struct Subtree {
   int side;
   uint32_t node_count;
   uint32_t first_node;
+  BinaryNode* nodes;  ///< owned by the build
 };
 
 /// One build. The nodes near the root are split level by level, each step parallel over the blocks
-/// of all nodes of the level; then the subtrees below them, each by one thread.
+/// of all nodes of the level; then the subtrees below them, each by one thread. Near the root only
+/// the order of the primitives is partitioned: they themselves stay where they are, and since
+/// partitions are stable, each node meets its own by rising address.
 class Build {
  public:
-  Build(Array<BuildPrimitive>& primitives, const Config& config, Memory& memory,
+  Build(Array<BuildPrimitive> primitives, const Config& config, Memory& memory,
         const Parallel& parallel)
-      : primitives_(primitives),
+      : primitives_(std::move(primitives)),
         config_(config),
         memory_(memory),
         parallel_(parallel),
-        count_(static_cast<uint32_t>(primitives.size())),
+        count_(static_cast<uint32_t>(primitives_.size())),
         // Enough blocks and subtrees to keep many threads busy, of a size worth starting a task.
         block_size_(std::max(4096u, count_ / 1024)),
-        subtree_size_(config.subtree_size ? config.subtree_size : std::max(4096u, count_ / 256)),
-        scratch_(memory, primitives.size()),
+        subtree_size_(config.subtree_size ? config.subtree_size
+                                          : std::clamp(count_ / 256, 4096u, 32768u)),
+        order_{Array<uint32_t>(memory, count_), Array<uint32_t>(memory, count_)},
         top_nodes_(memory),
         subtrees_(memory) {
     subtree_size_ = std::max(subtree_size_, config.max_leaf_size);
-    buffers_ = {{primitives.data(), scratch_.data()}};
   }
+  ~Build() {
+    for (Subtree& subtree : subtree_list_) free_nodes(subtree);
+  }
+  Build(const Build&) = delete;
+  Build& operator=(const Build&) = delete;
 
   BinaryBvh run() {
-    BinaryBvh bvh;
-    bvh.primitive_ids = Array<uint32_t>(memory_, count_);
     const OpenNode root = {bounds_of_all(), 0, count_, 1, 0};
     top_nodes_.push_back(BinaryNode{});
     GrowingArray<LevelNode> level(memory_);
     add_open_node(root, 0, level);
     for (int side = 0; !level.empty(); side = 1 - side) level = split_level(level, side);
-    // A subtree of n primitives has at most 2n - 2 nodes below its root.
-    Array<BinaryNode> subtree_nodes(memory_, size_t{2} * count_);
-    build_subtrees(subtree_nodes, bvh.primitive_ids.data());
-    bvh.nodes = join_nodes(subtree_nodes);
-    return bvh;
+    build_subtrees();
+    primitives_ = Array<BuildPrimitive>();
+    order_[1] = Array<uint32_t>();
+    return {join_nodes(), std::move(order_[0])};
   }
 
  private:
+  /// Sets the first order, too.
   RangeBounds bounds_of_all() {
     const size_t blocks = (count_ + block_size_ - 1) / block_size_;
     Array<RangeBounds> partial(memory_, blocks);
@@ -177,7 +188,10 @@ class Build {
       const size_t begin = block * block_size_;
       const size_t end = std::min<size_t>(begin + block_size_, count_);
       RangeBounds bounds = RangeBounds::empty();
-      for (size_t i = begin; i < end; ++i) bounds.extend(primitives_[i]);
+      for (size_t i = begin; i < end; ++i) {
+        bounds.extend(primitives_[i]);
+        order_[0][i] = static_cast<uint32_t>(i);
+      }
       partial[block] = bounds;
     });
     RangeBounds all = RangeBounds::empty();
@@ -185,10 +199,10 @@ class Build {
     return all;
   }
 
-  /// Files a node whose primitives stand in buffer side: as a subtree, or to be split next.
+  /// Files a node whose primitives order_[side] names: as a subtree, or to be split next.
   void add_open_node(const OpenNode& open, int side, GrowingArray<LevelNode>& level) {
     if (open.count() <= subtree_size_) {
-      subtrees_.push_back({open, side, 0, 0});
+      subtrees_.push_back({open, side, 0, 0, nullptr});
     } else {
       level.push_back({open, BinMapping(), SplitDecision(), 0, 0});
     }
@@ -196,11 +210,11 @@ class Build {
 
   GrowingArray<LevelNode> split_level(GrowingArray<LevelNode>& level, int side) {
     Array<Block> blocks = cut_into_blocks(level);
-    const BuildPrimitive* from = buffers_.buffer[side];
+    const uint32_t* from = order_[side].data();
     decide_level(level, blocks, from);
     parallel_.for_each(blocks.size(), [&](size_t i) {
       Block& block = blocks[i];
-      scatter(level[block.open_node], block, from, buffers_.buffer[1 - side]);
+      scatter(level[block.open_node], block, from, order_[1 - side].data());
     });
     GrowingArray<LevelNode> next(memory_);
     for (size_t i = 0; i < level.size(); ++i) add_children(level[i], blocks, 1 - side, next);
@@ -223,8 +237,7 @@ class Build {
   }
 
   /// Decides each node's split, and where in the other buffer each block's primitives go.
-  void decide_level(GrowingArray<LevelNode>& level, Array<Block>& blocks,
-                    const BuildPrimitive* from) {
+  void decide_level(GrowingArray<LevelNode>& level, Array<Block>& blocks, const uint32_t* from) {
     parallel_.for_each(level.size(), [&](size_t i) {
       LevelNode& node = level[i];
       const uint32_t bins = BinnedSahBuilder::bins_of(node.open.count(), config_);
@@ -234,7 +247,9 @@ class Build {
     parallel_.for_each(blocks.size(), [&](size_t i) {
       const BinMapping& mapping = level[blocks[i].open_node].mapping;
       block_bins[i].clear(mapping.bin_count);
-      block_bins[i].add(from + blocks[i].begin, from + blocks[i].end, mapping);
+      for (uint32_t k = blocks[i].begin; k < blocks[i].end; ++k) {
+        block_bins[i].add(primitives_[from[k]], mapping);
+      }
     });
     parallel_.for_each(level.size(), [&](size_t i) {
       LevelNode& node = level[i];
@@ -270,8 +285,7 @@ class Build {
     }
   }
 
-  static void scatter(const LevelNode& node, Block& block, const BuildPrimitive* from,
-                      BuildPrimitive* to) {
+  void scatter(const LevelNode& node, Block& block, const uint32_t* from, uint32_t* to) const {
     RangeBounds child[2] = {RangeBounds::empty(), RangeBounds::empty()};
     uint32_t cursor[2] = {block.cursor[0], block.cursor[1]};
     const SplitDecision& decision = node.decision;
@@ -279,8 +293,9 @@ class Build {
     const SplitPlane plane(node.mapping, decision.axis, decision.last_left_bin);
     const uint32_t middle = node.open.begin + decision.left_count;
     for (uint32_t i = block.begin; i < block.end; ++i) {
-      const uint32_t is_right = by_plane ? plane.is_right(from[i]) : i >= middle;
-      child[is_right].extend(from[i]);
+      const BuildPrimitive& primitive = primitives_[from[i]];
+      const uint32_t is_right = by_plane ? plane.is_right(primitive) : i >= middle;
+      child[is_right].extend(primitive);
       to[cursor[is_right]++] = from[i];
     }
     block.child[0] = child[0];
@@ -304,7 +319,7 @@ class Build {
     }
   }
 
-  void build_subtrees(Array<BinaryNode>& nodes, uint32_t* primitive_ids) {
+  void build_subtrees() {
     // In the order of primitives, so that neighbouring subtrees are neighbours in memory.
     subtree_list_ = subtrees_.take();
     std::sort(subtree_list_.begin(), subtree_list_.end(),
@@ -317,14 +332,27 @@ class Build {
     parallel_.for_each(order.size(), [&](size_t i) {
       Subtree& subtree = subtree_list_[order[i]];
       const OpenNode& open = subtree.open;
-      SubtreeBuilder builder(config_, buffers_, primitive_ids,
-                             nodes.data() + size_t{2} * open.begin);
-      subtree.node_count = builder.build(open, subtree.side, top_nodes_[open.node]);
+      SubtreeBuilder builder(config_, open, memory_);
+      builder.build(primitives_.data(), order_[subtree.side].data() + open.begin,
+                    order_[0].data() + open.begin, top_nodes_[open.node]);
+      keep_nodes(builder, subtree);
     });
   }
 
+  void keep_nodes(const SubtreeBuilder& builder, Subtree& subtree) {
+    const size_t bytes = builder.node_count() * sizeof(BinaryNode);
+    subtree.nodes = static_cast<BinaryNode*>(memory_.allocate(bytes, kNodeAlignment));
+    subtree.node_count = builder.node_count();
+    std::copy_n(builder.nodes(), subtree.node_count, subtree.nodes);
+  }
+
+  void free_nodes(Subtree& subtree) {
+    memory_.deallocate(subtree.nodes, subtree.node_count * sizeof(BinaryNode), kNodeAlignment);
+    subtree.nodes = nullptr;
+  }
+
   /// All nodes in one array without gaps: those near the root, then subtree by subtree.
-  Array<BinaryNode> join_nodes(const Array<BinaryNode>& subtree_nodes) {
+  Array<BinaryNode> join_nodes() {
     uint32_t total = static_cast<uint32_t>(top_nodes_.size());
     for (Subtree& subtree : subtree_list_) {
       subtree.first_node = total;
@@ -333,28 +361,29 @@ class Build {
     Array<BinaryNode> nodes(memory_, total);
     for (size_t i = 0; i < top_nodes_.size(); ++i) nodes[i] = top_nodes_[i];
     parallel_.for_each(subtree_list_.size(), [&](size_t i) {
-      const Subtree& subtree = subtree_list_[i];
+      Subtree& subtree = subtree_list_[i];
       BinaryNode& root = nodes[subtree.open.node];
       if (!root.is_leaf()) root.first += subtree.first_node;
-      const BinaryNode* from = subtree_nodes.data() + size_t{2} * subtree.open.begin;
       for (uint32_t k = 0; k < subtree.node_count; ++k) {
-        BinaryNode node = from[k];
+        BinaryNode node = subtree.nodes[k];
         if (!node.is_leaf()) node.first += subtree.first_node;
         nodes[subtree.first_node + k] = node;
       }
+      free_nodes(subtree);
     });
     return nodes;
   }
 
-  Array<BuildPrimitive>& primitives_;
+  static constexpr size_t kNodeAlignment = 64;
+
+  Array<BuildPrimitive> primitives_;
   const Config& config_;
   Memory& memory_;
   const Parallel& parallel_;
   uint32_t count_;
   uint32_t block_size_;
   uint32_t subtree_size_;
-  Array<BuildPrimitive> scratch_;
-  PrimitiveBuffers buffers_{};
+  Array<uint32_t> order_[2];  ///< of the primitives; in the end the first one holds their ids
   GrowingArray<BinaryNode> top_nodes_;
   GrowingArray<Subtree> subtrees_;
   Array<Subtree> subtree_list_;
@@ -367,10 +396,10 @@ uint32_t BinnedSahBuilder::bins_of(uint32_t primitive_count, const Config& confi
   return std::min(most, 4 + primitive_count / 4);
 }
 
-BinaryBvh BinnedSahBuilder::build(Array<BuildPrimitive>& primitives, const Config& config,
+BinaryBvh BinnedSahBuilder::build(Array<BuildPrimitive> primitives, const Config& config,
                                   Memory& memory, const Parallel& parallel) {
   if (primitives.empty()) return {Array<BinaryNode>(memory, 0), Array<uint32_t>(memory, 0)};
-  return Build(primitives, config, memory, parallel).run();
+  return Build(std::move(primitives), config, memory, parallel).run();
 }
 
 }  // namespace kiwami

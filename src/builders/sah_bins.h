@@ -143,16 +143,14 @@ struct SahBins {
     }
   }
 
-  /// Adds primitives: all three axes in one pass, so that each is read from memory once.
-  void add(const BuildPrimitive* begin, const BuildPrimitive* end, const BinMapping& mapping) {
-    for (const BuildPrimitive* primitive = begin; primitive != end; ++primitive) {
-      const VectorBounds bounds = VectorBounds::of(*primitive);
-      int32_t bin[4];
-      mapping.bins_of(bounds.doubled_centroid(), bin);
-      for (int axis = 0; axis < 3; ++axis) {
-        box[bin[axis]][axis].extend(bounds);
-        ++count[bin[axis]][axis];
-      }
+  /// Adds a primitive: all three axes at once, so that it is read from memory once.
+  void add(const BuildPrimitive& primitive, const BinMapping& mapping) {
+    const VectorBounds bounds = VectorBounds::of(primitive);
+    int32_t bin[4];
+    mapping.bins_of(bounds.doubled_centroid(), bin);
+    for (int axis = 0; axis < 3; ++axis) {
+      box[bin[axis]][axis].extend(bounds);
+      ++count[bin[axis]][axis];
     }
   }
 

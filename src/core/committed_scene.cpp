@@ -138,8 +138,9 @@ BinaryBvh CommittedScene::build_binary(const SceneParameters& parameters) {
       collect_build_primitives(source(), numbered_count_, memory_, *parallel_);
   triangle_count_ = primitives.size();
   const BinnedSahBuilder::Config config = builder_config(parameters, tree_.width);
-  BinaryBvh binary = BinnedSahBuilder::build(primitives, config, memory_, *parallel_);
+  BinaryBvh binary = BinnedSahBuilder::build(std::move(primitives), config, memory_, *parallel_);
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
+    primitives = collect_build_primitives(source(), numbered_count_, memory_, *parallel_);
     verify_binary_bvh(binary, primitives.data(), primitives.size(), config.max_leaf_size, memory_);
   }
   return binary;

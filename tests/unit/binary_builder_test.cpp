@@ -102,10 +102,8 @@ class BinaryBuilder : public testing::Test {
 
   /// Builds and verifies.
   BinaryBvh build(const Mesh& mesh, const Config& config, const kiwami::Parallel& parallel) {
-    Array<BuildPrimitive> primitives = primitives_of(mesh, memory_);
-    BinaryBvh bvh = BinnedSahBuilder::build(primitives, config, memory_, parallel);
-    kiwami::verify_binary_bvh(bvh, primitives.data(), primitives.size(), config.max_leaf_size,
-                              memory_);
+    BinaryBvh bvh =
+        BinnedSahBuilder::build(primitives_of(mesh, memory_), config, memory_, parallel);
     const Array<BuildPrimitive> original = primitives_of(mesh, memory_);
     kiwami::verify_binary_bvh(bvh, original.data(), original.size(), config.max_leaf_size, memory_);
     return bvh;

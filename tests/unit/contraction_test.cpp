@@ -26,7 +26,7 @@ class ContractionTest : public testing::Test {
     kiwami::BinnedSahBuilder::Config config;
     config.max_leaf_size = config.block_size = leaf_size;
     auto primitives = primitives_of(mesh, memory_);
-    return kiwami::BinnedSahBuilder::build(primitives, config, memory_, Threads(1));
+    return kiwami::BinnedSahBuilder::build(std::move(primitives), config, memory_, Threads(1));
   }
 
   kiwami::Memory memory_;

@@ -86,7 +86,7 @@ class OptimalContractionTest : public testing::Test {
     kiwami::BinnedSahBuilder::Config config;
     config.max_leaf_size = config.block_size = leaf_size;
     auto primitives = primitives_of(mesh, memory_);
-    return kiwami::BinnedSahBuilder::build(primitives, config, memory_, Threads(1));
+    return kiwami::BinnedSahBuilder::build(std::move(primitives), config, memory_, Threads(1));
   }
 
   Contraction contract_optimally(const BinaryBvh& bvh, const OptimalContractionConfig& config) {

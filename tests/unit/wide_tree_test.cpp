@@ -32,7 +32,8 @@ class WideTreeTest : public testing::Test {
     kiwami::BinnedSahBuilder::Config config;
     config.max_leaf_size = config.block_size = leaf_size;
     auto primitives = scene.primitives(memory_);
-    const BinaryBvh binary = kiwami::BinnedSahBuilder::build(primitives, config, memory_, parallel);
+    const BinaryBvh binary =
+        kiwami::BinnedSahBuilder::build(std::move(primitives), config, memory_, parallel);
     WideTreeConfig wide;
     wide.width = width;
     wide.merge_leaves = merge;
