@@ -25,6 +25,13 @@ struct Layout {
   SharedPlaces leaves;  ///< of the leaves, by number
 };
 
+/// What packing needs of the binary tree, so that this can be freed before.
+struct Contents {
+  Array<Bounds> boxes;              ///< by slot
+  Array<uint32_t> first_primitive;  ///< by leaf, among primitive_ids
+  Array<uint32_t> primitive_ids;    ///< leaf by leaf
+};
+
 SharedPlaces place(const Array<uint8_t>& sizes, const WideTreeConfig& config, Memory& memory) {
   return config.merge_leaves ? place_shared(sizes, config.width, config.merge_ring, memory)
                              : place_alone(sizes, memory);
@@ -59,13 +66,38 @@ Layout make_layout(const BinaryBvh& binary, const WideTreeConfig& config, Memory
   return layout;
 }
 
+Contents extract_contents(const BinaryBvh& binary, const Contraction& contraction, Memory& memory,
+                          const Parallel& parallel) {
+  const Array<ContractedSlot>& slots = contraction.slots;
+  Contents contents{Array<Bounds>(memory, slots.size()),
+                    Array<uint32_t>(memory, contraction.leaf_sizes.size()),
+                    Array<uint32_t>(memory, binary.primitive_ids.size())};
+  uint32_t next = 0;
+  for (size_t leaf = 0; leaf < contraction.leaf_sizes.size(); ++leaf) {
+    contents.first_primitive[leaf] = next;
+    next += contraction.leaf_sizes[leaf];
+  }
+  parallel.for_blocks(slots.size(), kPackingBlock, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      contents.boxes[i] = binary.nodes[slots[i].binary_node].bounds;
+      if (!slots[i].is_leaf()) continue;
+      uint32_t* to =
+          contents.primitive_ids.data() + contents.first_primitive[slots[i].child & ~kLeafFlag];
+      for_each_leaf(binary, slots[i].binary_node, [&](const BinaryNode& leaf) {
+        to = std::copy_n(binary.primitive_ids.begin() + leaf.first, leaf.count, to);
+      });
+    }
+  });
+  return contents;
+}
+
 /// Writes the nodes and leaf blocks of a tree.
 template <int N>
 class Packer {
  public:
-  Packer(const BinaryBvh& binary, const TriangleSource& source, const Layout& layout,
+  Packer(const Contents& contents, const TriangleSource& source, const Layout& layout,
          WideTree& tree)
-      : binary_(binary),
+      : contents_(contents),
         source_(source),
         layout_(layout),
         centre_(tree.view.centre),
@@ -114,7 +146,7 @@ class Packer {
     for (uint32_t i = 0; i < owner.slot_count; ++i) {
       const ContractedSlot& slot = layout_.contraction.slots[owner.first_slot + i];
       const uint32_t target = place.first + i;
-      const Bounds& box = binary_.nodes[slot.binary_node].bounds;
+      const Bounds& box = contents_.boxes[owner.first_slot + i];
       for (int axis = 0; axis < 3; ++axis) {
         node.bounds[axis][0][target] = subtract_down(box.lower[axis], centre_[axis]);
         node.bounds[axis][1][target] = subtract_up(box.upper[axis], centre_[axis]);
@@ -129,14 +161,12 @@ class Packer {
   }
 
   void pack_leaf(const ContractedSlot& slot) {
-    const SharedPlace& place = layout_.leaves.places[slot.child & ~kLeafFlag];
-    LeafBlock<N>& block = leaves_[place.index];
-    uint32_t lane = place.first;
-    for_each_leaf(binary_, slot.binary_node, [&](const BinaryNode& leaf) {
-      for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-        pack_triangle(binary_.primitive_ids[i], block, lane++);
-      }
-    });
+    const uint32_t leaf = slot.child & ~kLeafFlag;
+    const SharedPlace& place = layout_.leaves.places[leaf];
+    const uint32_t* ids = contents_.primitive_ids.data() + contents_.first_primitive[leaf];
+    for (uint32_t i = 0; i < layout_.contraction.leaf_sizes[leaf]; ++i) {
+      pack_triangle(ids[i], leaves_[place.index], place.first + i);
+    }
   }
 
   void pack_triangle(uint32_t id, LeafBlock<N>& block, uint32_t lane) {
@@ -150,7 +180,7 @@ class Packer {
     block.id[lane] = id;
   }
 
-  const BinaryBvh& binary_;
+  const Contents& contents_;
   const TriangleSource& source_;
   const Layout& layout_;
   Vec3f centre_;
@@ -159,11 +189,11 @@ class Packer {
 };
 
 template <int N>
-void pack(const BinaryBvh& binary, const TriangleSource& source, const Layout& layout,
+void pack(const Contents& contents, const TriangleSource& source, const Layout& layout,
           WideTree& tree, Memory& memory, const Parallel& parallel) {
   tree.nodes = Array<unsigned char>(memory, tree.node_count * sizeof(WideNode<N>));
   tree.leaves = Array<unsigned char>(memory, tree.leaf_block_count * sizeof(LeafBlock<N>));
-  Packer<N>(binary, source, layout, tree).run(parallel);
+  Packer<N>(contents, source, layout, tree).run(parallel);
 }
 
 /// All of the view but the pointers. Boxes lie within the root's, and rounding keeps that order,
@@ -195,7 +225,7 @@ double sah_cost_of(const Contraction& contraction, double root_area, const WideT
 
 }  // namespace
 
-WideTree build_wide_tree(const BinaryBvh& binary, const TriangleSource& source,
+WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
                          const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {
   if (config.width != 4 && config.width != 8 && config.width != 16) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "width is %u, expected 4, 8 or 16", config.width);
@@ -209,7 +239,7 @@ WideTree build_wide_tree(const BinaryBvh& binary, const TriangleSource& source,
   }
   const Layout layout = make_layout(binary, config, memory, parallel);
   const Contraction& contraction = layout.contraction;
-  const Bounds& root_box = binary.nodes[0].bounds;
+  const Bounds root_box = binary.nodes[0].bounds;
   tree.view = make_view(root_box, layout);
   tree.node_count = layout.nodes.count;
   tree.leaf_block_count = layout.leaves.count;
@@ -217,15 +247,17 @@ WideTree build_wide_tree(const BinaryBvh& binary, const TriangleSource& source,
   tree.used_lanes = binary.primitive_ids.size();
   tree.depth = contraction.depth;
   tree.sah_cost = sah_cost_of(contraction, root_box.half_area(), config);
+  const Contents contents = extract_contents(binary, contraction, memory, parallel);
+  binary = BinaryBvh();
   switch (config.width) {
     case 4:
-      pack<4>(binary, source, layout, tree, memory, parallel);
+      pack<4>(contents, source, layout, tree, memory, parallel);
       break;
     case 8:
-      pack<8>(binary, source, layout, tree, memory, parallel);
+      pack<8>(contents, source, layout, tree, memory, parallel);
       break;
     default:
-      pack<16>(binary, source, layout, tree, memory, parallel);
+      pack<16>(contents, source, layout, tree, memory, parallel);
       break;
   }
   tree.view.nodes = tree.nodes.data();

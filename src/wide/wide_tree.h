@@ -37,8 +37,9 @@ struct WideTreeConfig {
   float leaf_cost = 1.0f;
 };
 
-/// Contracts a binary tree whose leaves own at most config.width triangles.
-WideTree build_wide_tree(const BinaryBvh& binary, const TriangleSource& source,
+/// Contracts a binary tree whose leaves own at most config.width triangles. Takes the tree, to free
+/// it before the wide one is written.
+WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
                          const WideTreeConfig& config, Memory& memory, const Parallel& parallel);
 
 /// Checks every invariant of the tree: references and depth in range; each slot and lane owned by

@@ -32,12 +32,12 @@ class WideTreeTest : public testing::Test {
     kiwami::BinnedSahBuilder::Config config;
     config.max_leaf_size = config.block_size = leaf_size;
     auto primitives = scene.primitives(memory_);
-    const BinaryBvh binary =
+    BinaryBvh binary =
         kiwami::BinnedSahBuilder::build(std::move(primitives), config, memory_, parallel);
     WideTreeConfig wide;
     wide.width = width;
     wide.merge_leaves = merge;
-    return kiwami::build_wide_tree(binary, scene.source(), wide, memory_, parallel);
+    return kiwami::build_wide_tree(std::move(binary), scene.source(), wide, memory_, parallel);
   }
 
   void verify(const WideTree& tree, const TreeScene& scene) {
