@@ -27,14 +27,24 @@ inline StackEntry child_of(const WideNode<N>& node, int slot, float entry) {
   return {node.child[slot], node.mask[slot], entry, 0};
 }
 
+// Inlined by force: GCC takes a function that only prefetches for one without effects and drops it.
+template <size_t kSize>
+__attribute__((always_inline)) inline void prefetch_lines(const void* first) {
+  const auto* line = static_cast<const char*>(first);
+#pragma GCC unroll 16
+  for (size_t offset = 0; offset < kSize; offset += 64) __builtin_prefetch(line + offset);
+}
+
 /// Brings a child that will be visited later into the cache.
 template <int N>
-inline void prefetch(const TreeView& tree, uint32_t child) {
-  const bool is_leaf = (child & kLeafFlag) != 0;
-  const auto* base = static_cast<const char*>(is_leaf ? tree.leaves : tree.nodes);
-  const size_t size = is_leaf ? sizeof(LeafBlock<N>) : sizeof(WideNode<N>);
-  const char* first = base + static_cast<size_t>(child & ~kLeafFlag) * size;
-  for (size_t offset = 0; offset < size; offset += 64) __builtin_prefetch(first + offset);
+__attribute__((always_inline)) inline void prefetch(const TreeView& tree, uint32_t child) {
+  if (child & kLeafFlag) {
+    const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
+    prefetch_lines<sizeof(LeafBlock<N>)>(leaves + (child ^ kLeafFlag));
+  } else {
+    const auto* const nodes = static_cast<const WideNode<N>*>(tree.nodes);
+    prefetch_lines<sizeof(WideNode<N>)>(nodes + child);
+  }
 }
 
 /// Puts the nearest of the hit slots into next and the others onto the stack, farthest first.
