@@ -17,6 +17,7 @@ namespace kiwami_tests {
 namespace {
 
 using kiwami::BinaryBvh;
+using kiwami::ContractionMethod;
 using kiwami::kLeafFlag;
 using kiwami::LeafBlock;
 using kiwami::WideNode;
@@ -37,6 +38,8 @@ class WideTreeTest : public testing::Test {
     WideTreeConfig wide;
     wide.width = width;
     wide.merge_leaves = merge;
+    wide.contraction = contraction_;
+    wide.max_leaf_size = width;
     return kiwami::build_wide_tree(std::move(binary), scene.source(), wide, memory_, parallel);
   }
 
@@ -46,6 +49,7 @@ class WideTreeTest : public testing::Test {
 
   kiwami::Memory memory_;
   Threads one_thread_{1};
+  ContractionMethod contraction_ = ContractionMethod::kSurfaceArea;
 };
 
 double fill(uint64_t used, uint64_t count, uint32_t width) {
@@ -85,6 +89,42 @@ TEST_F(WideTreeTest, MergingFillsTheNodes) {
           EXPECT_GE(slots, is_regular ? 0.93 : 0.96);
           EXPECT_GE(lanes, 0.90);
         }
+      }
+    }
+  }
+}
+
+TEST_F(WideTreeTest, MergingFillsTheNodesOfTheOptimalContraction) {
+  contraction_ = ContractionMethod::kOptimal;
+  const std::unique_ptr<TreeScene> scenes[] = {
+      std::make_unique<TreeScene>("terrain", terrain(75)),
+      std::make_unique<TreeScene>("soup", soup(12000, seed())),
+      std::make_unique<TreeScene>("spheres", spheres(20000, seed())),
+      std::make_unique<TreeScene>("large terrain", terrain(250))};
+  for (const auto& scene : scenes) {
+    for (const uint32_t width : {8u, 16u}) {
+      const WideTree tree = build(*scene, width, width / 2, true, one_thread_);
+      verify(tree, *scene);
+      const double slots = fill(tree.used_slots, tree.node_count, width);
+      const double lanes = fill(tree.used_lanes, tree.leaf_block_count, width);
+      std::printf("%-13s %6u triangles, width %2u: slots %.2f %%, lanes %.2f %%\n",
+                  scene->name().c_str(), scene->count(), width, 100 * slots, 100 * lanes);
+      // Where neighbours are alike, so are their nodes, and equal sizes do not add up to a full
+      // one.
+      EXPECT_GE(slots, scene->name() == "soup" ? 0.96 : 0.89);
+      EXPECT_GE(lanes, 0.94);
+    }
+  }
+}
+
+TEST_F(WideTreeTest, OptimalContractionsOfDegenerateInputsGiveValidTrees) {
+  contraction_ = ContractionMethod::kOptimal;
+  for (NamedMesh& named : degenerate_meshes(seed())) {
+    const TreeScene scene(named.name, named.mesh);
+    for (const uint32_t width : {4u, 8u, 16u}) {
+      for (const uint32_t leaf_size : {1u, width / 2}) {
+        SCOPED_TRACE(named.name + ", width " + std::to_string(width));
+        EXPECT_NO_THROW(verify(build(scene, width, leaf_size, true, one_thread_), scene));
       }
     }
   }
