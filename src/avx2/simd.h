@@ -50,14 +50,14 @@ inline uint32_t equal(vfloat<8> a, vfloat<8> b) {
 
 /// A broadcast from memory costs as much as a load, so the four stay scalar.
 template <int N>
-struct uniform4 {
+struct Uniform4 {
   float lane[4];
 
   vfloat<N> operator[](int i) const { return broadcast<N>(lane[i]); }
 };
 template <int N>
-inline uniform4<N> spread(vfloat<4> a) {
-  uniform4<N> result;
+inline Uniform4<N> spread(vfloat<4> a) {
+  Uniform4<N> result;
   store(result.lane, a);
   return result;
 }

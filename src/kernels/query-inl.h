@@ -33,19 +33,21 @@ inline bool is_visible(const SceneView& scene, const ScalarRay& ray, uint32_t id
 /// The state that all queries share: the ray, and how far along it anything is of interest.
 template <int N>
 struct QueryBase {
-  const SceneView& scene;
-  const ScalarRay& scalar;
+  const SceneView* scene;
+  const ScalarRay* scalar;
   vfloat<N> nearest;  ///< scaled and widened: rejects triangles before their distance is known
   vfloat<N> best;     ///< the same for the far end; the closest hit draws it nearer
   float best_bound;   ///< best, as one float
 
-  QueryBase(const SceneView& scene_view, const ScalarRay& ray) : scene(scene_view), scalar(ray) {
+  void begin(const SceneView& scene_view, const ScalarRay& ray) {
+    scene = &scene_view;
+    scalar = &ray;
     nearest = broadcast<N>(scaled_lower(ray, ray.tmin));
     set_best(ray.tmax);
   }
 
   void set_best(float t) {
-    best_bound = scaled_upper(scalar, t);
+    best_bound = scaled_upper(*scalar, t);
     best = broadcast<N>(best_bound);
   }
 
@@ -54,15 +56,15 @@ struct QueryBase {
   template <typename Probe, typename Accept>
   bool for_each_hit(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe, Accept accept) {
     ShearedBlock<N> sheared;
-    uint32_t inside = test_inside<N>(leaf, scalar, nearest, best, lanes, sheared, probe);
+    uint32_t inside = test_inside<N>(leaf, *scalar, nearest, best, lanes, sheared, probe);
     if (inside == 0) return false;
     float t[N], determinant[N];
-    compute_distances<N>(sheared, scalar, inside, t, determinant);
+    compute_distances<N>(sheared, *scalar, inside, t, determinant);
     for (; inside; inside &= inside - 1) {
       const int lane = __builtin_ctz(inside);
-      if (!(scalar.tmin <= t[lane] && t[lane] <= scalar.tmax)) continue;
-      if (!is_visible(scene, scalar, leaf.id[lane], determinant[lane])) continue;
-      probe.on_accept(scaled_upper(scalar, t[lane]));
+      if (!(scalar->tmin <= t[lane] && t[lane] <= scalar->tmax)) continue;
+      if (!is_visible(*scene, *scalar, leaf.id[lane], determinant[lane])) continue;
+      probe.on_accept(scaled_upper(*scalar, t[lane]));
       if (accept(lane, t[lane])) return true;
     }
     return false;
@@ -76,12 +78,16 @@ struct ClosestHitQuery : QueryBase<N> {
   using Answer = kiwami_hit;
 
   float best_t;
-  uint32_t best_id = KIWAMI_INVALID_ID;
-  const LeafBlock<N>* best_leaf = nullptr;
-  int best_lane = 0;
+  uint32_t best_id;
+  const LeafBlock<N>* best_leaf;
+  int best_lane;
 
-  ClosestHitQuery(const SceneView& scene_view, const ScalarRay& ray)
-      : QueryBase<N>(scene_view, ray), best_t(ray.tmax) {}
+  void begin(const SceneView& scene_view, const ScalarRay& ray) {
+    QueryBase<N>::begin(scene_view, ray);
+    best_t = ray.tmax;
+    best_id = KIWAMI_INVALID_ID;
+    best_leaf = nullptr;
+  }
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
@@ -112,13 +118,13 @@ struct ClosestHitQuery : QueryBase<N> {
     if (!best_leaf) return miss();
     kiwami_hit hit;
     hit.t = best_t;
-    compute_barycentrics(*best_leaf, this->scalar, best_lane, hit.u, hit.v);
+    compute_barycentrics(*best_leaf, *this->scalar, best_lane, hit.u, hit.v);
     const auto corner = [&](int k, int axis) { return best_leaf->position[k][axis][best_lane]; };
     const auto edge = [&](int k, int axis) { return corner(k, axis) - corner(0, axis); };
     hit.normal_x = edge(1, 1) * edge(2, 2) - edge(1, 2) * edge(2, 1);
     hit.normal_y = edge(1, 2) * edge(2, 0) - edge(1, 0) * edge(2, 2);
     hit.normal_z = edge(1, 0) * edge(2, 1) - edge(1, 1) * edge(2, 0);
-    const GeometryRange& range = range_of(this->scene, best_id);
+    const GeometryRange& range = range_of(*this->scene, best_id);
     hit.primitive_id = best_id - range.first_id;
     hit.geometry_id = range.geometry_id;
     hit.instance_id = KIWAMI_INVALID_ID;
@@ -132,9 +138,12 @@ struct AnyHitQuery : QueryBase<N> {
   static constexpr bool kOrdered = false;
   using Answer = uint8_t;
 
-  bool is_hit = false;
+  bool is_hit;
 
-  using QueryBase<N>::QueryBase;
+  void begin(const SceneView& scene_view, const ScalarRay& ray) {
+    QueryBase<N>::begin(scene_view, ray);
+    is_hit = false;
+  }
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
@@ -152,9 +161,12 @@ struct AllHitsQuery : QueryBase<N> {
   static constexpr bool kOrdered = false;
   using Answer = uint32_t;
 
-  uint32_t count = 0;
+  uint32_t count;
 
-  using QueryBase<N>::QueryBase;
+  void begin(const SceneView& scene_view, const ScalarRay& ray) {
+    QueryBase<N>::begin(scene_view, ray);
+    count = 0;
+  }
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {

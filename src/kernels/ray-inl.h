@@ -22,8 +22,8 @@ namespace {
 constexpr float kMargin = 9.0f * 0x1p-24f;
 /// Below this size errors are absolute (denormal numbers); it is far above 2^-149.
 constexpr float kLeastMagnitude = 0x1p-100f;
-/// Smaller direction components, relative to the greatest, are raised to this.
-constexpr float kLeastDirection = 0x1p-64f;
+/// Smaller direction components, where the greatest is 1 to 2, are raised to this.
+constexpr float kLeastDirection = 0x1p-63f;
 /// Widens scaled distances: where a distance is denormal it has been rounded by up to half the
 /// least float, where a scaled one is, by as much; any other is left as it is.
 constexpr double kLeastDistance = 0x1p-140;
@@ -35,13 +35,13 @@ constexpr double kLeastFloat = 0x1p-149;
 struct ScalarRay {
   float origin[4];     ///< x, y, z; the fourth lane is not used
   float direction[4];  ///< scaled; the same
-  float ratio[4];      ///< direction / greatest direction component
+  float ratio[4];      ///< direction / direction[kz]; those of kx and ky are the shears
+  float shear_z;       ///< 1 / direction[kz]
   float tmin, tmax;    ///< as given, but finite: a distance that overflows is no hit
+  int kx, ky, kz;      ///< kz: axis of the greatest component; kx, ky: so that winding is kept
   double scale;        ///< scaled distance = distance * scale
   double unscale;      ///< its inverse
   double slack;        ///< widens scaled distances
-  int kx, ky, kz;      ///< kz: axis of the greatest component; kx, ky: so that winding is kept
-  float shear_z;       ///< 1 / direction[kz]; ratio[kx] and ratio[ky] are the other two shears
   uint32_t mask, flags;
 };
 
@@ -71,33 +71,42 @@ inline double power_of_two(int exponent) {
   return value;
 }
 
-inline int exponent_of(float value) {
-  const double wide = value;  // a denormal float is a normal double
-  uint64_t bits;
-  __builtin_memcpy(&bits, &wide, sizeof bits);
-  return static_cast<int>((bits >> 52) & 0x7ff) - 1023;
+/// The direction with its greatest component brought into [1, 2), and the exponent that it had.
+inline vfloat<4> scale_direction(const kiwami_ray& ray, int& exponent) {
+  vfloat<4> direction = load<4>(second_half(ray));
+  int field = static_cast<int>(first_bits(greatest_of_three(absolute(direction))) >> 23);
+  exponent = field - 127;
+  if (__builtin_expect(field == 0 || field == 254, 0)) {
+    // A factor of 2^-exponent would not be a normal float: a step before leads there.
+    direction = direction * broadcast<4>(field == 0 ? 0x1p64f : 0x1p-1f);
+    field = static_cast<int>(first_bits(greatest_of_three(absolute(direction))) >> 23);
+    exponent = exponent < 0 ? field - 127 - 64 : field - 127 + 1;
+  }
+  const uint32_t factor_bits = static_cast<uint32_t>(254 - field) << 23;
+  float factor;
+  __builtin_memcpy(&factor, &factor_bits, sizeof factor);
+  return direction * broadcast<4>(factor);
 }
 
 inline void set_up_scalar(const kiwami_ray& ray, ScalarRay& out) {
+  int exponent;
+  const vfloat<4> direction = scale_direction(ray, exponent);
+  store(out.direction, direction);
+  store(out.origin, load<4>(first_half(ray)));
   const float x = __builtin_fabsf(ray.direction_x), y = __builtin_fabsf(ray.direction_y),
               z = __builtin_fabsf(ray.direction_z);
   const float greatest_xy = x < y ? y : x;
   const int kz = greatest_xy < z ? 2 : x < y ? 1 : 0;
-  const float major = second_half(ray)[kz];
   const int next = kz == 2 ? 0 : kz + 1, last = kz == 0 ? 2 : kz - 1;
-  const bool is_negative = major < 0.0f;
+  const bool is_negative = second_half(ray)[kz] < 0.0f;
   out.kz = kz;
   out.kx = is_negative ? last : next;
   out.ky = is_negative ? next : last;
-  const int exponent = exponent_of(major);
+  const float major = out.direction[kz];
+  store(out.ratio, direction / broadcast<4>(major));
+  out.shear_z = 1.0f / major;
   out.scale = power_of_two(exponent);
   out.unscale = power_of_two(-exponent);
-  store(out.origin, load<4>(first_half(ray)));
-  store_rounded(out.direction, load_widened(second_half(ray)) * broadcast_double(out.unscale));
-  const vfloat<4> direction = load<4>(out.direction);
-  const vfloat<4> greatest = broadcast<4>(out.direction[kz]);
-  store(out.ratio, direction / greatest);
-  out.shear_z = 1.0f / out.direction[kz];
   out.slack = kLeastDistance + kLeastFloat * out.scale;
   out.tmin = ray.tmin > -__FLT_MAX__ ? ray.tmin : -__FLT_MAX__;
   out.tmax = ray.tmax < __FLT_MAX__ ? ray.tmax : __FLT_MAX__;
@@ -139,42 +148,51 @@ constexpr PlaneOffsets<N> kPlaneOffsets[8] = {
 /// The ray as the node test reads it: near = bound * reciprocal + near_offset per axis.
 template <int N>
 struct SlabRay {
-  uniform4<N> reciprocal;
-  uniform4<N> near_offset;
-  uniform4<N> far_offset;
+  Uniform4<N> reciprocal;
+  Uniform4<N> near_offset;
+  Uniform4<N> far_offset;
   vfloat<N> tmin;
   const PlaneOffsets<N>* planes;
 };
 
-/// The axes lie in the lanes. The margin takes S = 1 along the major axis too, where 0 would do.
-template <int N>
-inline void set_up_slabs(const ScalarRay& ray, const TreeView& tree, SlabRay<N>& out) {
+/// What SlabRay spreads, with the axes in the lanes.
+struct AxisSlabs {
+  vfloat<4> reciprocal, near_offset, far_offset;
+  uint32_t backward;  ///< bit for each axis along which the ray runs backward
+};
+
+/// In the margin, M_kz is taken as the greatest M of all axes, S_a as |d_a| and 1 / |d_kz| as 1:
+/// all no less than they are, since |d_kz| lies in [1, 2), and known without looking for kz.
+inline void set_up_axes(const ScalarRay& ray, const TreeView& tree, AxisSlabs& out) {
   const vfloat<4> origin =
       load<4>(ray.origin) - load<4>(reinterpret_cast<const float*>(&tree.centre));
+  const vfloat<4> direction = load<4>(ray.direction);
+  const vfloat<4> size = absolute(direction);
+  const vfloat<4> raised = max(size, broadcast<4>(kLeastDirection));
+  const vfloat<4> reciprocal_size = broadcast<4>(1.0f) / raised;
   const vfloat<4> magnitude =
       absolute(origin) + (load<4>(reinterpret_cast<const float*>(&tree.greatest_bound)) +
                           broadcast<4>(kLeastMagnitude));
-  float magnitudes[4];
-  store(magnitudes, magnitude);
-  const float major_magnitude = magnitudes[ray.kz];
-  const vfloat<4> direction = load<4>(ray.direction);
-  const vfloat<4> size = absolute(direction);
-  const float major_size = __builtin_fabsf(ray.direction[ray.kz]);
-  const vfloat<4> raised = max(size, broadcast<4>(kLeastDirection * major_size));
-  const vfloat<4> reciprocal_size = broadcast<4>(1.0f) / raised;
-  const vfloat<4> reciprocal = copy_sign(reciprocal_size, direction);
-  const vfloat<4> relative =
-      broadcast<4>(kMargin) *
-      (magnitude + absolute(load<4>(ray.ratio)) * broadcast<4>(major_magnitude)) * reciprocal_size;
+  const vfloat<4> greatest_magnitude = greatest_of_three(magnitude);
+  const vfloat<4> rounding = broadcast<4>(kMargin) * (magnitude + size * greatest_magnitude);
   // A raised component moves the point by what was added, times t <= M_kz / |d_kz|.
-  const vfloat<4> moved =
-      (raised - size) * reciprocal_size * broadcast<4>(major_magnitude / major_size);
-  const vfloat<4> margin = relative + moved;
-  const vfloat<4> product = origin * reciprocal;
-  out.reciprocal = spread<N>(reciprocal);
-  out.near_offset = spread<N>(broadcast<4>(0.0f) - product - margin);
-  out.far_offset = spread<N>(margin - product);
-  out.planes = &kPlaneOffsets<N>[sign_bits(direction) & 7u];
+  const vfloat<4> moved = (raised - size) * greatest_magnitude;
+  const vfloat<4> margin = (rounding + moved) * reciprocal_size;
+  out.reciprocal = copy_sign(reciprocal_size, direction);
+  const vfloat<4> product = origin * out.reciprocal;
+  out.near_offset = broadcast<4>(0.0f) - product - margin;
+  out.far_offset = margin - product;
+  out.backward = sign_bits(direction) & 7u;
+}
+
+template <int N>
+inline void set_up_slabs(const ScalarRay& ray, const TreeView& tree, SlabRay<N>& out) {
+  AxisSlabs slabs;
+  set_up_axes(ray, tree, slabs);
+  out.reciprocal = spread<N>(slabs.reciprocal);
+  out.near_offset = spread<N>(slabs.near_offset);
+  out.far_offset = spread<N>(slabs.far_offset);
+  out.planes = &kPlaneOffsets<N>[slabs.backward];
   out.tmin = broadcast<N>(scaled_lower(ray, ray.tmin));
 }
 

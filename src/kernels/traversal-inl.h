@@ -14,8 +14,8 @@ namespace {
 struct StackEntry {
   uint32_t child;
   uint32_t mask;
-  float entry;  ///< distance at which the ray enters its box
-  uint32_t reserved;
+  float entry;    ///< distance at which the ray enters its box
+  uint32_t rays;  ///< of a packet: those that enter it
 };
 
 /// A path of kMaxWideDepth nodes leaves at most N - 1 entries at each.
@@ -47,6 +47,16 @@ __attribute__((always_inline)) inline void prefetch(const TreeView& tree, uint32
   }
 }
 
+/// Adds an entry to those above bottom, which are sorted farthest first: insertion sort, since few
+/// children are hit at once. Returns the new top of the stack.
+inline StackEntry* insert_farthest_first(StackEntry* bottom, StackEntry* top,
+                                         const StackEntry& added) {
+  StackEntry* place = top;
+  for (; place != bottom && place[-1].entry < added.entry; --place) *place = place[-1];
+  *place = added;
+  return top + 1;
+}
+
 /// Puts the nearest of the hit slots into next and the others onto the stack, farthest first.
 /// Returns the new top of the stack.
 template <int N>
@@ -66,10 +76,7 @@ inline StackEntry* choose_nearest(const TreeView& tree, const WideNode<N>& node,
       other = next;
       next = nearer;
     }
-    // Insertion sort: few children are hit at once.
-    StackEntry* place = top++;
-    for (; place != bottom && place[-1].entry < other.entry; --place) *place = place[-1];
-    *place = other;
+    top = insert_farthest_first(bottom, top, other);
   }
   return top;
 }
@@ -88,14 +95,15 @@ inline StackEntry* choose_first(const WideNode<N>& node, uint32_t hits, const fl
   return top;
 }
 
+/// Visits what the query has to see of the subtree at start. Returns true if the query ended it.
 template <int N, typename Query, typename Probe>
-inline void traverse(const TreeView& tree, const SlabRay<N>& ray, Query& query, Probe& probe) {
+inline bool traverse(const TreeView& tree, const StackEntry& start, const SlabRay<N>& ray,
+                     Query& query, Probe& probe) {
   const auto* const nodes = static_cast<const WideNode<N>*>(tree.nodes);
   const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
   StackEntry stack[kStackSize<N>];
   StackEntry* top = stack;
-  const float ray_begin = scaled_lower(query.scalar, query.scalar.tmin);
-  StackEntry current{tree.root, tree.root_mask, ray_begin, 0};
+  StackEntry current = start;
   while (true) {
     if (!(current.child & kLeafFlag)) {
       probe.on_node();
@@ -114,10 +122,10 @@ inline void traverse(const TreeView& tree, const SlabRay<N>& ray, Query& query, 
       }
     } else {
       probe.on_leaf(current.entry);
-      if (query.visit_leaf(leaves[current.child ^ kLeafFlag], current.mask, probe)) return;
+      if (query.visit_leaf(leaves[current.child ^ kLeafFlag], current.mask, probe)) return true;
     }
     do {
-      if (top == stack) return;
+      if (top == stack) return false;
       current = *--top;
     } while (Query::kOrdered && current.entry > query.best_bound);
   }

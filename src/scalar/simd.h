@@ -2,8 +2,9 @@
 // The vocabulary of the kernels in portable C++: the oracle of the other instruction sets.
 //
 //   vfloat<N>      N floats: load, store, + - *, min, max, multiply_add, comparisons to bit masks
-//   vfloat<4>      also /, absolute, copy_sign, sign_bits: for the set-up of a ray
-//   uniform4<N>    4 floats, each to be read as a vector of equal lanes, many times
+//   vfloat<4>      also /, absolute, copy_sign, sign_bits, greatest_of_three, first_bits: for the
+//                  set-up of a ray
+//   Uniform4<N>    4 floats, each to be read as a vector of equal lanes, many times
 //   vdouble4       4 doubles, read from and written to floats
 //
 // min and max return their second operand where a lane is NaN or the two are equal, as the SSE
@@ -96,15 +97,27 @@ inline uint32_t sign_bits(vfloat<4> a) {
   return mask_of<4>([&](int i) { return __builtin_signbit(a.lane[i]) != 0; });
 }
 
+/// In each of the first three lanes the greatest of them; they are not negative.
+inline vfloat<4> greatest_of_three(vfloat<4> a) {
+  const float xy = a.lane[0] < a.lane[1] ? a.lane[1] : a.lane[0];
+  return broadcast<4>(xy < a.lane[2] ? a.lane[2] : xy);
+}
+/// The bits of the first lane.
+inline uint32_t first_bits(vfloat<4> a) {
+  uint32_t bits;
+  __builtin_memcpy(&bits, a.lane, sizeof bits);
+  return bits;
+}
+
 template <int N>
-struct uniform4 {
+struct Uniform4 {
   float lane[4];
 
   vfloat<N> operator[](int i) const { return broadcast<N>(lane[i]); }
 };
 template <int N>
-inline uniform4<N> spread(vfloat<4> a) {
-  uniform4<N> result;
+inline Uniform4<N> spread(vfloat<4> a) {
+  Uniform4<N> result;
   store(result.lane, a);
   return result;
 }

@@ -10,13 +10,13 @@ namespace {
 
 /// A broadcast takes a shuffle beside the load, so it is done once.
 template <int N>
-struct uniform4 {
+struct Uniform4 {
   vfloat<4> lane[4];
 
   vfloat<4> operator[](int i) const { return lane[i]; }
 };
 template <int N>
-inline uniform4<N> spread(vfloat<4> a) {
+inline Uniform4<N> spread(vfloat<4> a) {
   return {{{simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(0, 0, 0, 0))},
            {simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(1, 1, 1, 1))},
            {simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(2, 2, 2, 2))},

@@ -57,6 +57,15 @@ inline vfloat<4> absolute(vfloat<4> a) {
 inline vfloat<4> copy_sign(vfloat<4> magnitude, vfloat<4> sign) {
   return {simde_mm_or_ps(magnitude.value, simde_mm_and_ps(simde_mm_set1_ps(-0.0f), sign.value))};
 }
+/// In each of the first three lanes the greatest of them.
+inline vfloat<4> greatest_of_three(vfloat<4> a) {
+  const simde__m128 yzx = simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(0, 0, 2, 1));
+  const simde__m128 zxy = simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(0, 1, 0, 2));
+  return {simde_mm_max_ps(simde_mm_max_ps(a.value, yzx), zxy)};
+}
+inline uint32_t first_bits(vfloat<4> a) {
+  return static_cast<uint32_t>(simde_mm_cvtsi128_si32(simde_mm_castps_si128(a.value)));
+}
 inline uint32_t sign_bits(vfloat<4> a) {
   return static_cast<uint32_t>(simde_mm_movemask_ps(a.value));
 }
