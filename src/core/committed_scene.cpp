@@ -37,7 +37,7 @@ BinnedSahBuilder::Config builder_config(const SceneParameters& parameters, uint3
   config.bin_count = parameters.whole(KIWAMI_PARAMETER_BIN_COUNT);
   config.max_leaf_size = leaf_size_of(parameters, width);
   // The optimal contraction collapses small subtrees to leaves itself. Leaves of half the size, or
-  // of four triangles, leave it nearly all of the choice (within 1.3 % of the cost from single
+  // of four triangles, leave it nearly all of the choice (within 2.3 % of the cost from single
   // triangles on real scenes) and a tree that is a third as large.
   if (contraction_of(parameters) == ContractionMethod::kOptimal) {
     config.max_leaf_size = std::min(config.max_leaf_size, std::max(4u, config.max_leaf_size / 2));
