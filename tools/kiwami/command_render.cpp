@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -10,7 +9,9 @@
 #include "kiwami/options.h"
 #include "kiwami/progress.h"
 #include "kiwami/renderer.h"
+#include "kiwami/view_options.h"
 #include "measure/camera.h"
+#include "scene/procedural.h"
 
 namespace kiwami::tools {
 namespace {
@@ -20,12 +21,9 @@ struct RenderOptions {
   std::string output;
   std::string mode = "path";
   std::string size = "1024x768";
-  std::string eye;
-  std::string target;
-  std::string up;
-  double field_of_view = 0.0;  ///< 0: the view's own
   uint32_t samples_per_pixel = 16;
   uint32_t bounces = 4;
+  ViewOptions view;
   TraceOptions trace;
 };
 
@@ -36,38 +34,11 @@ RenderMode parse_mode(const std::string& name) {
   throw UsageError("--mode is '" + name + "', expected normals, ao or path");
 }
 
-/// The view of the options; what they leave out comes from the scene.
-View choose_view(const RenderOptions& options, const SceneFile& file, const Box& box,
-                 const Size& size) {
-  const Vec3 up = options.up.empty() ? file.view ? file.view->up : Vec3{0, 1, 0}
-                                     : parse_vector("--up", options.up);
-  if (!(length(up) > 0.0f)) throw UsageError("--up is '" + options.up + "', which has no length");
-  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  const float angle = options.field_of_view > 0.0 ? static_cast<float>(options.field_of_view)
-                      : file.view                 ? file.view->vertical_field_of_view
-                                                  : kDefaultFieldOfView;
-  View view = file.view ? *file.view : fit_view(box, up, angle, aspect);
-  view.up = up;
-  view.vertical_field_of_view = angle;
-  if (!options.eye.empty()) view.eye = parse_vector("--eye", options.eye);
-  if (!options.target.empty()) view.target = parse_vector("--target", options.target);
-  const Vec3 sight = view.target - view.eye;
-  if (!(length(sight) > 0.0f) || !std::isfinite(length(sight))) {
-    throw UsageError("the eye and the target are the same point, or too far apart");
-  }
-  if (!(length(cross(normalize(sight), normalize(up))) > 1e-6f)) {
-    throw UsageError("the camera looks along its up vector");
-  }
-  return view;
-}
-
 /// Syntax errors of options that need the scene are found before the scene is read.
 void check_options(const RenderOptions& options) {
   parse_mode(options.mode);
   parse_size("--size", options.size);
-  if (!options.eye.empty()) parse_vector("--eye", options.eye);
-  if (!options.target.empty()) parse_vector("--target", options.target);
-  if (!options.up.empty()) parse_vector("--up", options.up);
+  check_view_options(options.view);
   check_image_path("--output", options.output);
 }
 
@@ -96,7 +67,8 @@ void run_render(const RenderOptions& options) {
   print_build(file, device, scene.info());
 
   const Box box = bounds_of(scene.info());
-  const View view = choose_view(options, file, box, size);
+  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  const View view = choose_view(options.view, file, box, aspect);
   RenderSettings settings;
   settings.mode = parse_mode(options.mode);
   settings.samples_per_pixel = options.samples_per_pixel;
@@ -126,9 +98,9 @@ void add_render_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("render", "Render a picture of a scene");
   const auto options = std::make_shared<RenderOptions>();
   command
-      ->add_option("SCENE", options->scene,
-                   "An .obj, .tri or .ins file, each also with .gz, or one of " +
-                       std::string("stadium, sphere:LEVEL, terrain:N, soup:N:SEED"))
+      ->add_option(
+          "SCENE", options->scene,
+          "An .obj, .tri or .ins file, each also with .gz, or one of " + procedural_scene_names())
       ->required();
   command->add_option("-o,--output", options->output, "The picture: a .png or .ppm file")
       ->required();
@@ -142,11 +114,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--bounces", options->bounces, "Bounces of a path")
       ->check(whole_number(1, 8))
       ->capture_default_str();
-  command->add_option("--eye", options->eye, "Where the camera stands: x,y,z");
-  command->add_option("--target", options->target, "What it looks at: x,y,z");
-  command->add_option("--up", options->up, "Which way is up: x,y,z");
-  command->add_option("--fov", options->field_of_view, "Vertical field of view in degrees")
-      ->check(finite_number(1, 170));
+  add_view_options(*command, options->view);
   add_trace_options(*command, options->trace);
   command->callback([options, &exit_code] {
     run_render(*options);

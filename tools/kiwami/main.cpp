@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The `kiwami` command. It exits with 0, with 2 and one sentence on stderr, or, of `verify` alone,
-// with 1 when two answers differ.
+// The `kiwami` command. It exits with 0, with 2 and one sentence on stderr, or, of `verify`,
+// `demo` and `bench`, with 1 when two answers differ.
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -21,7 +21,7 @@ int fail(std::string sentence) {
 
 /// CLI11 says of an unknown command no more than that one is required.
 void check_command_name(const CLI::App& app, int argc, char** argv) {
-  const std::string expected = ", expected info, render, verify or demo; see kiwami --help";
+  const std::string expected = ", expected info, render, verify, demo or bench; see kiwami --help";
   if (argc < 2) throw kiwami::tools::UsageError("no command is given" + expected);
   const std::string name = argv[1];
   const auto commands =
@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
   kiwami::tools::add_render_command(app, exit_code);
   kiwami::tools::add_verify_command(app, exit_code);
   kiwami::tools::add_demo_command(app, exit_code);
+  kiwami::tools::add_bench_command(app, exit_code);
   check_command_name(app, argc, argv);
   try {
     app.parse(argc, argv);

@@ -21,8 +21,11 @@ Progress::Progress(uint64_t total)
       start_(Clock::now()),
       last_drawn_(start_) {}
 
-Progress::~Progress() {
+Progress::~Progress() { clear(); }
+
+void Progress::clear() {
   if (drawn_) std::fputs("\r\033[K", stderr);
+  drawn_ = false;
 }
 
 void Progress::update(uint64_t done, uint64_t rays) {

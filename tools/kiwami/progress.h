@@ -17,6 +17,8 @@ class Progress {
 
   /// `done` of the total; `rays` traced so far, for the rate.
   void update(uint64_t done, uint64_t rays);
+  /// Takes the bar away until the next update, so that a line can be printed.
+  void clear();
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -12,27 +12,38 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-std::vector<double> interleaved_medians(std::span<const std::function<void()>> contenders,
-                                        uint32_t rounds,
-                                        const std::function<void(size_t)>& after_run) {
+std::vector<std::vector<double>> interleaved_seconds(std::span<const Contender> contenders,
+                                                     uint32_t rounds) {
   std::vector<std::vector<double>> seconds(contenders.size());
   for (uint32_t round = 0; round < rounds; ++round) {
     for (size_t turn = 0; turn < contenders.size(); ++turn) {
       const size_t i = round % 2 == 0 ? turn : contenders.size() - 1 - turn;
+      contenders[i].prepare();
       const auto start = std::chrono::steady_clock::now();
-      contenders[i]();
+      contenders[i].run();
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
       seconds[i].push_back(spent.count());
-      after_run(i);
+      contenders[i].check();
     }
   }
+  return seconds;
+}
+
+std::vector<double> interleaved_medians(std::span<const std::function<void()>> contenders,
+                                        uint32_t rounds,
+                                        const std::function<void(size_t)>& after_run) {
+  std::vector<Contender> prepared;
+  for (size_t i = 0; i < contenders.size(); ++i) {
+    prepared.push_back({[] {}, contenders[i], [&after_run, i] { after_run(i); }});
+  }
   std::vector<double> medians;
-  for (std::vector<double>& of_one : seconds) medians.push_back(median(std::move(of_one)));
+  for (const std::vector<double>& seconds : interleaved_seconds(prepared, rounds)) {
+    medians.push_back(median(seconds));
+  }
   return medians;
 }
 
-uint64_t hash_hits(std::span<const kiwami_hit> hits) {
-  const auto bytes = std::as_bytes(hits);
+uint64_t hash_bytes(std::span<const std::byte> bytes) {
   uint64_t hash = 14695981039346656037u;
   for (const std::byte byte : bytes) {
     hash ^= static_cast<uint64_t>(byte);
@@ -40,5 +51,7 @@ uint64_t hash_hits(std::span<const kiwami_hit> hits) {
   }
   return hash;
 }
+
+uint64_t hash_hits(std::span<const kiwami_hit> hits) { return hash_bytes(std::as_bytes(hits)); }
 
 }  // namespace kiwami::tools

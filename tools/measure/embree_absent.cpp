@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "measure/embree_contender.h"
 #include "measure/tracer.h"
 
 namespace kiwami::tools {
 
 std::unique_ptr<EmbreeTracer> EmbreeTracer::create(const SceneFile&, bool) { return nullptr; }
+
+std::unique_ptr<EmbreeContender> EmbreeContender::create(const SceneFile&, uint32_t, uint32_t,
+                                                         bool) {
+  return nullptr;
+}
+
+std::string entrance_name(EmbreeEntrance, bool) { return ""; }
 
 const char* embree_version() { return ""; }
 

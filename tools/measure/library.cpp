@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "measure/library.h"
 
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
 namespace kiwami::tools {
 namespace {
 
@@ -15,6 +19,43 @@ void check(kiwami_result result, const kiwami_device* device) {
     sentence.pop_back();
   }
   throw LibraryError(result, sentence.empty() ? kiwami_result_name(result) : sentence);
+}
+
+constexpr struct {
+  const char* name;
+  uint32_t number;
+} kParameters[] = {{"bvh_width", KIWAMI_PARAMETER_BVH_WIDTH},
+                   {"merge_leaves", KIWAMI_PARAMETER_MERGE_LEAVES},
+                   {"merge_ring", KIWAMI_PARAMETER_MERGE_RING},
+                   {"bin_count", KIWAMI_PARAMETER_BIN_COUNT},
+                   {"max_leaf_size", KIWAMI_PARAMETER_MAX_LEAF_SIZE},
+                   {"node_cost", KIWAMI_PARAMETER_NODE_COST},
+                   {"leaf_cost", KIWAMI_PARAMETER_LEAF_COST},
+                   {"validate_build", KIWAMI_PARAMETER_VALIDATE_BUILD},
+                   {"contraction", KIWAMI_PARAMETER_CONTRACTION}};
+
+std::string parameter_names() {
+  std::string names;
+  for (const auto& parameter : kParameters) {
+    names += (names.empty() ? "" : ", ") + std::string(parameter.name);
+  }
+  return names;
+}
+
+/// The whole text as a number, or nothing.
+template <typename T>
+std::optional<T> parse_whole(const std::string& text) {
+  T number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+kiwami_query calling_thread_query() {
+  kiwami_query query;
+  check(kiwami_query_init(&query, sizeof query), nullptr);
+  query.flags = KIWAMI_QUERY_CALLING_THREAD;
+  return query;
 }
 
 /// Holds the reference to a geometry until the scene has its own.
@@ -49,16 +90,22 @@ Device::Device(uint32_t isa, uint32_t thread_count) {
 BuiltScene::BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options) {
   check(kiwami_scene_create(device.get(), &scene_), device.get());
   try {
-    check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_BVH_WIDTH, options.bvh_width),
-          device.get());
-    check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_MERGE_LEAVES,
-                                     options.merge_leaves ? 1.0 : 0.0),
-          device.get());
+    set_parameters(device.get(), options);
     for (const Mesh& mesh : file.meshes) attach(device.get(), mesh);
     commit();
   } catch (...) {
     kiwami_scene_release(scene_);
     throw;
+  }
+}
+
+void BuiltScene::set_parameters(kiwami_device* device, const BuildOptions& options) {
+  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_BVH_WIDTH, options.bvh_width), device);
+  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_MERGE_LEAVES,
+                                   options.merge_leaves ? 1.0 : 0.0),
+        device);
+  for (const Parameter& parameter : options.parameters) {
+    check(kiwami_scene_set_parameter(scene_, parameter.number, parameter.value), device);
   }
 }
 
@@ -86,6 +133,44 @@ void BuiltScene::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami
 
 void BuiltScene::any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const {
   check(kiwami_any_hit(scene_, rays.data(), 0, occluded.data(), 0, rays.size(), nullptr), nullptr);
+}
+
+void BuiltScene::closest_hits_singly(std::span<const kiwami_ray> rays,
+                                     std::span<kiwami_hit> hits) const {
+  const kiwami_query query = calling_thread_query();
+  for (size_t i = 0; i < rays.size(); ++i) {
+    check(kiwami_closest_hit(scene_, &rays[i], 0, &hits[i], 0, 1, &query), nullptr);
+  }
+}
+
+void BuiltScene::any_hits_singly(std::span<const kiwami_ray> rays,
+                                 std::span<uint8_t> occluded) const {
+  const kiwami_query query = calling_thread_query();
+  for (size_t i = 0; i < rays.size(); ++i) {
+    check(kiwami_any_hit(scene_, &rays[i], 0, &occluded[i], 0, 1, &query), nullptr);
+  }
+}
+
+Parameter parse_parameter(const std::string& text) {
+  const size_t equals = std::min(text.find('='), text.size());
+  const std::string name = text.substr(0, equals);
+  uint32_t number = parse_whole<uint32_t>(name).value_or(0);
+  for (const auto& [known, its_number] : kParameters) {
+    if (name == known) number = its_number;
+  }
+  if (number == 0) {
+    throw LibraryError(
+        KIWAMI_ERROR_INVALID_ARGUMENT,
+        "there is no parameter '" + name + "', expected NAME=VALUE with " + parameter_names());
+  }
+  const std::string value_text = equals < text.size() ? text.substr(equals + 1) : "";
+  const std::optional<double> value = parse_whole<double>(value_text);
+  if (!value) {
+    throw LibraryError(
+        KIWAMI_ERROR_INVALID_ARGUMENT,
+        "the value of the parameter '" + name + "' is '" + value_text + "', expected a number");
+  }
+  return {number, *value};
 }
 
 std::vector<uint32_t> available_isas() {

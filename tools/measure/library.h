@@ -41,11 +41,22 @@ class Device {
   kiwami_device_info info_{};
 };
 
+/// One of KIWAMI_PARAMETER_* and its value.
+struct Parameter {
+  uint32_t number;
+  double value;
+};
+
 /// How a scene's acceleration structure is to be built.
 struct BuildOptions {
   uint32_t bvh_width = 0;  ///< 0: the device's default
   bool merge_leaves = true;
+  std::vector<Parameter> parameters = {};  ///< set after the others, in this order
 };
+
+/// The parameter of "bin_count=16": NAME is that of KIWAMI_PARAMETER_NAME in lower case, or its
+/// number. Throws LibraryError when it is neither, or VALUE is not a number.
+Parameter parse_parameter(const std::string& text);
 
 /// Owns a committed scene whose geometry i is mesh i of the file. It shares the file's buffers, so
 /// the file must outlive it.
@@ -60,8 +71,12 @@ class BuiltScene : public Tracer {
   const kiwami_scene_info& info() const { return info_; }
   void closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const override;
   void any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
+  /// The same with one call a ray, each on the calling thread.
+  void closest_hits_singly(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const;
+  void any_hits_singly(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
 
  private:
+  void set_parameters(kiwami_device* device, const BuildOptions& options);
   void attach(kiwami_device* device, const Mesh& mesh);
   void commit();
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "scene/large_scenes.h"
 #include "scene/random.h"
 #include "scene/teapot_stadium.h"
 
@@ -14,6 +15,11 @@ namespace {
 constexpr uint32_t kMaxSphereLevel = 9;
 constexpr uint32_t kMaxTerrainCells = 4096;
 constexpr uint32_t kMaxSoupTriangles = 10000000;
+constexpr uint32_t kMaxLargeTriangles = 100000000;
+// What the names of the large scenes mean without a number.
+constexpr uint32_t kTerrainCells = 1415;
+constexpr uint32_t kHairballTriangles = 2000000;
+constexpr uint32_t kRoomTriangles = 10000000;
 
 void push_vertex(Mesh& mesh, Vec3 v) { mesh.vertices.insert(mesh.vertices.end(), {v.x, v.y, v.z}); }
 
@@ -82,16 +88,23 @@ float value_noise(float x, float y, uint32_t octave) {
   return low * (1.0f - sy) + high * sy;
 }
 
-float terrain_height(float x, float y) {
+float terrain_height(float x, float y, uint32_t octaves) {
   float height = 0.0f;
   float frequency = 4.0f;
   float amplitude = 0.5f;
-  for (uint32_t octave = 0; octave < 6; ++octave) {
+  for (uint32_t octave = 0; octave < octaves; ++octave) {
     height += amplitude * value_noise(x * frequency, y * frequency, octave);
     frequency *= 2.0f;
     amplitude *= 0.5f;
   }
   return height;
+}
+
+/// Six, or as many as it takes to reach the size of two cells: a fine terrain is rough, too.
+uint32_t terrain_octaves(uint32_t cells) {
+  uint32_t octaves = 6;
+  while ((4u << octaves) <= cells / 2) ++octaves;
+  return octaves;
 }
 
 Vec3 random_in_cube(Random& random) {
@@ -123,6 +136,12 @@ SceneFile scene_of(Mesh mesh, const std::string& name) {
   return scene;
 }
 
+SceneFile large_terrain() {
+  SceneFile scene = scene_of(make_terrain(kTerrainCells), "terrain");
+  scene.view = View{{-0.85f, 0.55f, -0.95f}, {0.1f, 0.0f, 0.1f}, {0.0f, 1.0f, 0.0f}, 45.0f};
+  return scene;
+}
+
 }  // namespace
 
 Mesh make_sphere(uint32_t level) {
@@ -134,11 +153,12 @@ Mesh make_sphere(uint32_t level) {
 Mesh make_terrain(uint32_t cells) {
   Mesh mesh;
   const auto size = static_cast<float>(cells);
+  const uint32_t octaves = terrain_octaves(cells);
   for (uint32_t j = 0; j <= cells; ++j) {
     for (uint32_t i = 0; i <= cells; ++i) {
       const float x = static_cast<float>(i) / size;
       const float z = static_cast<float>(j) / size;
-      push_vertex(mesh, {2.0f * x - 1.0f, terrain_height(x, z) - 0.5f, 2.0f * z - 1.0f});
+      push_vertex(mesh, {2.0f * x - 1.0f, terrain_height(x, z, octaves) - 0.5f, 2.0f * z - 1.0f});
     }
   }
   const uint32_t row = cells + 1;
@@ -167,10 +187,16 @@ Mesh make_soup(uint32_t triangle_count, uint64_t seed) {
   return mesh;
 }
 
-std::string procedural_scene_names() { return "stadium, sphere:LEVEL, terrain:N, soup:N:SEED"; }
+std::string procedural_scene_names() {
+  return "stadium, terrain, hairball, room, sphere:LEVEL, terrain:N, soup:N:SEED, hairball:N, "
+         "room:N";
+}
 
 std::optional<SceneFile> make_procedural_scene(const std::string& name) {
   if (name == "stadium") return make_teapot_stadium();
+  if (name == "terrain") return large_terrain();
+  if (name == "hairball") return make_hairball(kHairballTriangles);
+  if (name == "room") return make_room(kRoomTriangles);
   const size_t colon = name.find(':');
   if (colon == std::string::npos) return std::nullopt;
   const std::string kind = name.substr(0, colon);
@@ -186,6 +212,10 @@ std::optional<SceneFile> make_procedural_scene(const std::string& name) {
     const uint64_t count = take_number(rest, name, "an N", 1, kMaxSoupTriangles);
     const uint64_t seed = take_number(rest, name, "a SEED", 0, UINT64_MAX);
     scene = scene_of(make_soup(static_cast<uint32_t>(count), seed), name);
+  } else if (kind == "hairball") {
+    scene = make_hairball(take_number(rest, name, "an N", 1, kMaxLargeTriangles));
+  } else if (kind == "room") {
+    scene = make_room(take_number(rest, name, "an N", 1, kMaxLargeTriangles));
   }
   if (scene && !rest.empty()) {
     throw SceneError("the scene '" + name + "' has more numbers than " + kind + " takes");

@@ -9,8 +9,9 @@
 
 namespace kiwami::tools {
 
-/// The scene of a name such as "stadium", "sphere:5", "terrain:200" or "soup:1000:7"; nothing when
-/// `name` is not a procedural scene's. Throws SceneError for a number outside its bounds.
+/// The scene of a name such as "stadium", "sphere:5", "terrain:200", "soup:1000:7" or "room";
+/// nothing when `name` is not a procedural scene's. Throws SceneError for a number outside its
+/// bounds.
 std::optional<SceneFile> make_procedural_scene(const std::string& name);
 
 /// What make_procedural_scene understands, for messages and help.

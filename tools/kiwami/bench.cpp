@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiwami/bench.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <memory>
+
+#include "kiwami/known_scenes.h"
+#include "kiwami/options.h"
+#include "measure/bench_rays.h"
+#include "measure/contest.h"
+#include "measure/embree_contender.h"
+#include "measure/parallel_blocks.h"
+
+namespace kiwami::tools {
+namespace {
+
+constexpr uint32_t kMostBuilds = 3;
+constexpr size_t kRaysPerBlock = 4096;
+// An entrance of Embree that is so much slower than its best one in the warming-up is left out.
+constexpr double kHopeless = 1.6;
+// Embree is not watertight, and of triangles at the same place either may be met.
+constexpr double kMostDisagreements = 0.01;
+
+double per_triangle(uint64_t bytes, uint64_t triangles) {
+  return static_cast<double>(bytes) / static_cast<double>(std::max<uint64_t>(triangles, 1));
+}
+
+/// Our side of a contest.
+class OwnRun {
+ public:
+  OwnRun(const BuiltScene& scene, const BenchRays& rays, BenchApi api, uint32_t threads)
+      : scene_(scene), rays_(rays), api_(api), threads_(threads) {
+    hits_.resize(rays.any_hit ? 0 : rays.set.rays.size());
+    occluded_.resize(rays.any_hit ? rays.set.rays.size() : 0);
+  }
+
+  /// Forgets the answers, so that those of the last round cannot pass for new ones.
+  void reset() {
+    if (!hits_.empty()) std::memset(hits_.data(), 0xCD, hits_.size() * sizeof hits_[0]);
+    std::fill(occluded_.begin(), occluded_.end(), uint8_t{0xCD});
+  }
+
+  void trace() {
+    const std::span<const kiwami_ray> rays = rays_.set.rays;
+    if (api_ == BenchApi::kBatch) {
+      if (rays_.any_hit) {
+        scene_.any_hits(rays, occluded_);
+      } else {
+        scene_.closest_hits(rays, hits_);
+      }
+      return;
+    }
+    parallel_blocks(threads_, rays.size(), kRaysPerBlock, [&](size_t first, size_t last) {
+      const auto block = rays.subspan(first, last - first);
+      if (rays_.any_hit) {
+        scene_.any_hits_singly(block, std::span(occluded_).subspan(first, block.size()));
+      } else {
+        scene_.closest_hits_singly(block, std::span(hits_).subspan(first, block.size()));
+      }
+    });
+  }
+
+  uint64_t hash() const {
+    return rays_.any_hit ? hash_bytes(std::as_bytes(std::span(occluded_))) : hash_hits(hits_);
+  }
+
+  /// As EmbreeRun::distance.
+  float distance(size_t i) const {
+    if (!rays_.any_hit) return hits_[i].t;
+    return occluded_[i] != 0 ? 0.0f : std::numeric_limits<float>::infinity();
+  }
+
+ private:
+  const BuiltScene& scene_;
+  const BenchRays& rays_;
+  BenchApi api_;
+  uint32_t threads_;
+  std::vector<kiwami_hit> hits_;
+  std::vector<uint8_t> occluded_;
+};
+
+/// One entrance of Embree that takes part in a contest.
+struct EmbreeSide {
+  EmbreeEntrance entrance;
+  std::unique_ptr<EmbreeRun> run;
+};
+
+/// The sides that may win, after each has traced the rays once.
+std::vector<EmbreeSide> choose_embree_sides(const EmbreeContender& embree, const BenchRays& rays,
+                                            BenchApi api, uint32_t threads) {
+  std::vector<EmbreeSide> sides;
+  std::vector<Contender> contenders;
+  for (const EmbreeEntrance entrance : kEmbreeEntrances) {
+    if (api == BenchApi::kSingle && entrance != EmbreeEntrance::kSingle) continue;
+    sides.push_back({entrance, embree.prepare(rays.set.rays, rays.any_hit, entrance)});
+    EmbreeRun* run = sides.back().run.get();
+    contenders.push_back({[run] { run->reset(); }, [run, threads] { run->trace(threads); }, [] {}});
+  }
+  if (sides.size() == 1) {
+    contenders.front().prepare();
+    contenders.front().run();
+    return sides;
+  }
+  const std::vector<std::vector<double>> seconds = interleaved_seconds(contenders, 1);
+  double best = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& of_one : seconds) best = std::min(best, of_one[0]);
+  std::vector<EmbreeSide> hopeful;
+  for (size_t i = 0; i < sides.size(); ++i) {
+    if (seconds[i][0] <= kHopeless * best) hopeful.push_back(std::move(sides[i]));
+  }
+  return hopeful;
+}
+
+uint64_t count_disagreements(const OwnRun& own, const EmbreeRun& peer, size_t count,
+                             float least_distance) {
+  uint64_t disagreements = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const float a = own.distance(i);
+    const float b = peer.distance(i);
+    // Written so that an infinite distance agrees with another one alone.
+    const bool agree = a == b || std::abs(a - b) <= 1e-3f * std::min(a, b) + least_distance;
+    if (!agree) ++disagreements;
+  }
+  return disagreements;
+}
+
+/// Everything about one scene.
+class SceneBench {
+ public:
+  SceneBench(const std::string& name, const BenchSettings& settings, const BenchListener& listener)
+      : name_(name), settings_(settings), listener_(listener), file_(load_known_scene(name)) {}
+
+  void run() {
+    for (const uint32_t isa : settings_.isas) {
+      for (const uint32_t threads : settings_.threads) run_device(isa, threads);
+    }
+  }
+
+ private:
+  void run_device(uint32_t isa, uint32_t threads);
+  BuildRow measure_builds(const Device& device, std::unique_ptr<BuiltScene>& scene,
+                          std::unique_ptr<EmbreeContender>& embree) const;
+  TraceRow measure_traces(const BuiltScene& scene, const EmbreeContender* embree,
+                          const BenchRays& rays, BenchApi api, const BenchCase& of);
+  void check_hash(TraceRow& row, uint64_t hash);
+  void make_rays(const BuiltScene& scene);
+
+  std::string name_;
+  const BenchSettings& settings_;
+  const BenchListener& listener_;
+  SceneFile file_;
+  std::vector<BenchRays> rays_;
+  float least_distance_ = 0.0f;
+  std::map<std::string, uint64_t> hashes_;  ///< the first answers to each ray set
+};
+
+void SceneBench::run_device(uint32_t isa, uint32_t threads) {
+  const Device device(isa, threads);
+  if (device.info().thread_count != threads) {
+    throw UsageError("--threads is " + std::to_string(threads) +
+                     ", but this machine has processors for " +
+                     std::to_string(device.info().thread_count));
+  }
+  std::unique_ptr<BuiltScene> scene;
+  // Its device has as many threads as ours: oneTBB has one limit for all who use it.
+  std::unique_ptr<EmbreeContender> embree;
+  const BuildRow build = measure_builds(device, scene, embree);
+  if (rays_.empty()) make_rays(*scene);
+  listener_.on_build(build);
+  for (const BenchApi api : settings_.apis) {
+    for (const BenchRays& rays : rays_) {
+      listener_.on_trace(measure_traces(*scene, embree.get(), rays, api, build.of));
+    }
+  }
+}
+
+void SceneBench::make_rays(const BuiltScene& scene) {
+  const Box box = bounds_of(scene.info());
+  const View view = choose_view(settings_.view, file_, box, 1.0f);
+  rays_ = make_bench_rays(scene, view, box, settings_.rays, settings_.ray_count);
+  least_distance_ = 1e-6f * box.diagonal();
+}
+
+BuildRow SceneBench::measure_builds(const Device& device, std::unique_ptr<BuiltScene>& scene,
+                                    std::unique_ptr<EmbreeContender>& embree) const {
+  std::vector<double> own;
+  std::vector<double> theirs;
+  std::vector<double> ratios;
+  for (uint32_t i = 0; i < std::min(settings_.rounds, kMostBuilds); ++i) {
+    scene.reset();
+    embree.reset();
+    scene = std::make_unique<BuiltScene>(device, file_, settings_.build);
+    own.push_back(scene->info().build_seconds);
+    if (!settings_.with_embree) continue;
+    embree = EmbreeContender::create(file_, device.info().isa, device.info().thread_count,
+                                     settings_.robust);
+    theirs.push_back(embree->build_seconds());
+    ratios.push_back(theirs.back() / own.back());
+  }
+  const kiwami_scene_info& info = scene->info();
+  BuildRow row;
+  row.of = {name_, info.triangle_count, device.info().thread_count,
+            kiwami_isa_name(device.info().isa), info.bvh_width};
+  row.milliseconds = median(own) * 1e3;
+  row.bytes_per_triangle = per_triangle(info.total_bytes, info.triangle_count);
+  row.peak_bytes_per_triangle = per_triangle(info.peak_build_bytes, info.triangle_count);
+  row.sah = info.sah_cost;
+  if (embree) {
+    row.peer = PeerBuild{median(theirs) * 1e3, median(ratios),
+                         per_triangle(embree->bytes(), info.triangle_count)};
+  }
+  return row;
+}
+
+void SceneBench::check_hash(TraceRow& row, uint64_t hash) {
+  const uint64_t expected = hashes_.try_emplace(row.rays, hash).first->second;
+  if (hash != expected && row.wrong.empty()) {
+    row.wrong =
+        format("the hash of the answers is %016llx, of the first ones %016llx",
+               static_cast<unsigned long long>(hash), static_cast<unsigned long long>(expected));
+  }
+}
+
+TraceRow SceneBench::measure_traces(const BuiltScene& scene, const EmbreeContender* embree,
+                                    const BenchRays& rays, BenchApi api, const BenchCase& of) {
+  const size_t count = rays.set.rays.size();
+  const double millions = static_cast<double>(count) * 1e-6;
+  TraceRow row{of, rays.set.name, rays.any_hit, api, 0.0, std::nullopt, 0, ""};
+  OwnRun own(scene, rays, api, of.threads);
+  own.reset();
+  own.trace();
+  row.hits_hash = own.hash();
+  check_hash(row, row.hits_hash);
+
+  std::vector<Contender> contenders = {{[&] { own.reset(); }, [&] { own.trace(); },
+                                        [&] {
+                                          check_hash(row, own.hash());
+                                          listener_.on_round(count);
+                                        }}};
+  std::vector<EmbreeSide> sides;
+  if (embree != nullptr) sides = choose_embree_sides(*embree, rays, api, of.threads);
+  for (const EmbreeSide& side : sides) {
+    EmbreeRun* run = side.run.get();
+    contenders.push_back({[run] { run->reset(); }, [run, &of] { run->trace(of.threads); },
+                          [&] { listener_.on_round(count); }});
+  }
+  const std::vector<std::vector<double>> seconds =
+      interleaved_seconds(contenders, settings_.rounds);
+  row.mrays = millions / median(seconds[0]);
+  if (sides.empty()) return row;
+
+  size_t best = 1;
+  for (size_t i = 2; i < seconds.size(); ++i) {
+    if (median(seconds[i]) < median(seconds[best])) best = i;
+  }
+  std::vector<double> ratios;
+  for (size_t i = 0; i < settings_.rounds; ++i) ratios.push_back(seconds[best][i] / seconds[0][i]);
+  const EmbreeSide& side = sides[best - 1];
+  row.peer = PeerTrace{entrance_name(side.entrance, rays.any_hit), millions / median(seconds[best]),
+                       median(ratios), count_disagreements(own, *side.run, count, least_distance_)};
+  if (static_cast<double>(row.peer->disagreements) >
+      kMostDisagreements * static_cast<double>(count)) {
+    row.wrong = format("%llu of %zu answers contradict Embree's",
+                       static_cast<unsigned long long>(row.peer->disagreements), count);
+  }
+  return row;
+}
+
+}  // namespace
+
+const char* bench_api_name(BenchApi api) { return api == BenchApi::kSingle ? "single" : "batch"; }
+
+void run_bench(const std::string& scene, const BenchSettings& settings,
+               const BenchListener& listener) {
+  SceneBench(scene, settings, listener).run();
+}
+
+size_t trace_row_count(const BenchSettings& settings) {
+  return settings.isas.size() * settings.threads.size() * settings.apis.size() *
+         settings.rays.size();
+}
+
+std::string peer_name(bool robust) {
+  return std::string("Embree ") + embree_version() + (robust ? " robust" : "");
+}
+
+}  // namespace kiwami::tools

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kiwami/view_options.h"
+#include "measure/library.h"
+
+namespace kiwami::tools {
+
+/// How rays are handed over.
+enum class BenchApi {
+  kSingle,  ///< one ray a call, from as many threads as are measured
+  kBatch,   ///< all rays in one call, on a device of as many threads
+};
+const char* bench_api_name(BenchApi api);
+
+/// What is measured. Each combination of the lists is a row.
+struct BenchSettings {
+  std::vector<std::string> rays;
+  std::vector<uint32_t> threads;
+  std::vector<BenchApi> apis;
+  std::vector<uint32_t> isas;  ///< KIWAMI_ISA_*
+  BuildOptions build;
+  ViewOptions view;
+  bool with_embree = true;
+  bool robust = false;  ///< Embree's robust scene flag
+  uint32_t rounds = 5;
+  size_t ray_count = 1u << 20;
+};
+
+/// What a row is about.
+struct BenchCase {
+  std::string scene;
+  uint64_t triangles;
+  uint32_t threads;
+  std::string isa;
+  uint32_t width;  ///< children a node
+};
+
+/// How the other side did on the same rays.
+struct PeerTrace {
+  std::string entrance;
+  double mrays;
+  double ratio;            ///< ours / theirs: the median of the ratios of each round
+  uint64_t disagreements;  ///< rays that miss here and hit there, or hit at another distance
+};
+
+struct TraceRow {
+  BenchCase of;
+  std::string rays;
+  bool any_hit;
+  BenchApi api;
+  double mrays;  ///< million rays a second, the median of the rounds
+  std::optional<PeerTrace> peer;
+  uint64_t hits_hash;
+  std::string wrong;  ///< what is wrong with the answers, or ""
+};
+
+struct PeerBuild {
+  double milliseconds;
+  double ratio;  ///< theirs / ours: above 1, ours is faster
+  double bytes_per_triangle;
+};
+
+struct BuildRow {
+  BenchCase of;
+  double milliseconds;
+  std::optional<PeerBuild> peer;
+  double bytes_per_triangle;
+  double peak_bytes_per_triangle;
+  double sah;
+};
+
+/// Told of everything as soon as it is known.
+struct BenchListener {
+  std::function<void(const BuildRow&)> on_build;
+  std::function<void(const TraceRow&)> on_trace;
+  std::function<void(uint64_t rays)> on_round;  ///< one side has traced so many more rays
+};
+
+/// Measures one scene, a file or a procedural one.
+void run_bench(const std::string& scene, const BenchSettings& settings,
+               const BenchListener& listener);
+
+/// How many rows of traces run_bench will make of a scene.
+size_t trace_row_count(const BenchSettings& settings);
+
+/// "Embree 3.13.5 robust".
+std::string peer_name(bool robust);
+
+}  // namespace kiwami::tools

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "kiwami/bench.h"
+#include "kiwami/bench_report.h"
+#include "kiwami/commands.h"
+#include "kiwami/image.h"
+#include "kiwami/known_scenes.h"
+#include "kiwami/options.h"
+#include "kiwami/progress.h"
+#include "measure/bench_rays.h"
+#include "scene/procedural.h"
+
+namespace kiwami::tools {
+namespace {
+
+constexpr int kWrongAnswer = 1;
+constexpr uint32_t kMostThreads = 1024;
+
+struct BenchOptions {
+  std::vector<std::string> scenes;
+  std::string list;
+  std::string scenes_folder = ".";
+  std::string peer = *embree_version() != '\0' ? "embree" : "none";
+  bool robust = false;
+  std::string rays = "primary,bounce,bounce_shuffled,ao,shadow,random";
+  std::string threads = std::thread::hardware_concurrency() > 1 ? "1,2" : "1";
+  std::string apis = "single,batch";
+  std::string isas = "auto";
+  uint32_t bvh_width = 0;
+  uint32_t rounds = 5;
+  uint64_t ray_count = 1u << 20;
+  std::vector<std::string> parameters;
+  ViewOptions view;
+  std::string json;
+};
+
+/// The words between the commas; `option` is named when one is empty or comes twice.
+std::vector<std::string> split(const std::string& option, const std::string& text) {
+  std::vector<std::string> words;
+  for (size_t start = 0; start <= text.size();) {
+    const size_t end = std::min(text.find(',', start), text.size());
+    words.push_back(text.substr(start, end - start));
+    if (words.back().empty() || std::count(words.begin(), words.end(), words.back()) > 1) {
+      throw UsageError(option + " is '" + text + "', expected different words between commas");
+    }
+    start = end + 1;
+  }
+  return words;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::vector<std::string> parse_rays(const std::string& text) {
+  const std::vector<std::string>& known = bench_ray_names();
+  std::vector<std::string> rays = split("--rays", text);
+  for (const std::string& name : rays) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw UsageError("--rays has '" + name + "', expected some of " + joined(known));
+    }
+  }
+  return rays;
+}
+
+std::vector<uint32_t> parse_threads(const std::string& text) {
+  std::vector<uint32_t> threads;
+  for (const std::string& word : split("--threads", text)) {
+    uint32_t number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || end != word.data() + word.size() || number < 1 ||
+        number > kMostThreads) {
+      throw UsageError("--threads has '" + word + "', expected whole numbers of 1 to " +
+                       std::to_string(kMostThreads));
+    }
+    threads.push_back(number);
+  }
+  return threads;
+}
+
+std::vector<BenchApi> parse_apis(const std::string& text) {
+  std::vector<BenchApi> apis;
+  for (const std::string& word : split("--api", text)) {
+    if (word != "single" && word != "batch") {
+      throw UsageError("--api has '" + word + "', expected single, batch or both");
+    }
+    apis.push_back(word == "single" ? BenchApi::kSingle : BenchApi::kBatch);
+  }
+  return apis;
+}
+
+BenchSettings make_settings(const BenchOptions& options) {
+  BenchSettings settings;
+  settings.rays = parse_rays(options.rays);
+  settings.threads = parse_threads(options.threads);
+  settings.apis = parse_apis(options.apis);
+  for (const std::string& isa : split("--isa", options.isas)) {
+    settings.isas.push_back(isa_of_name(isa));
+  }
+  settings.build.bvh_width = options.bvh_width;
+  for (const std::string& text : options.parameters) {
+    settings.build.parameters.push_back(parse_parameter(text));
+  }
+  check_view_options(options.view);
+  settings.view = options.view;
+  settings.with_embree = options.peer == "embree";
+  if (settings.with_embree && *embree_version() == '\0') {
+    throw UsageError("--vs is embree, but this command was built without Embree");
+  }
+  settings.robust = options.robust;
+  settings.rounds = options.rounds;
+  settings.ray_count = options.ray_count;
+  return settings;
+}
+
+std::vector<std::string> choose_scenes(const BenchOptions& options) {
+  std::vector<std::string> scenes = options.scenes;
+  if (!options.list.empty()) {
+    const std::vector<std::string> listed = scenes_of_list(options.list, options.scenes_folder);
+    scenes.insert(scenes.end(), listed.begin(), listed.end());
+  }
+  if (scenes.empty()) throw UsageError("no scene is given, expected some SCENE or --list");
+  if (scenes.size() > 1 && !options.view.empty()) {
+    throw UsageError("--eye, --target, --up and --fov are for one scene, but there are " +
+                     std::to_string(scenes.size()));
+  }
+  return scenes;
+}
+
+int run(const BenchOptions& options) {
+  const BenchSettings settings = make_settings(options);
+  const std::vector<std::string> scenes = choose_scenes(options);
+  if (!options.json.empty()) check_writable("--json", options.json);
+  const std::string peer = peer_name(settings.robust);
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  RatioSummary summary;
+  bool all_right = true;
+  uint64_t traced = 0;
+  uint64_t done = 0;
+  Progress bar(scenes.size() * trace_row_count(settings));
+  BenchListener listener;
+  listener.on_build = [&](const BuildRow& row) {
+    bar.clear();
+    print_row(row);
+    rows.push_back(to_json(row, peer));
+  };
+  listener.on_trace = [&](const TraceRow& row) {
+    bar.clear();
+    print_row(row);
+    rows.push_back(to_json(row, peer));
+    summary.add(row);
+    all_right = all_right && row.wrong.empty();
+    bar.update(++done, traced);
+  };
+  listener.on_round = [&](uint64_t rays) { bar.update(done, traced += rays); };
+  for (const std::string& scene : scenes) {
+    run_bench(scene, settings, listener);
+    // After each scene, so that a long run that is stopped has not been in vain.
+    if (!options.json.empty()) write_file(options.json, rows.dump(1) + "\n");
+  }
+  bar.clear();
+  summary.print();
+  return all_right ? 0 : kWrongAnswer;
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  const auto check = [words](std::string& text) -> std::string {
+    if (std::find(words.begin(), words.end(), text) != words.end()) return {};
+    return "it is '" + text + "', expected one of " + joined(words);
+  };
+  return CLI::Validator(check, "");
+}
+
+void add_scene_options(CLI::App& command, BenchOptions& options) {
+  command.add_option("SCENE", options.scenes,
+                     "One or more .obj, .tri or .ins files, each also with .gz, or some of " +
+                         procedural_scene_names());
+  command.add_option("--list", options.list, "All scenes of a list: " + joined(scene_list_names()))
+      ->check(one_of(scene_list_names()));
+  command.add_option("--scenes-folder", options.scenes_folder, "Where the files of the list are")
+      ->capture_default_str();
+  add_view_options(command, options.view);
+}
+
+void add_measuring_options(CLI::App& command, BenchOptions& options) {
+  command.add_option("--vs", options.peer, "Who traces the same rays: embree or none")
+      ->check(one_of({"embree", "none"}))
+      ->capture_default_str();
+  command.add_flag("--robust", options.robust, "Embree with its robust scene flag");
+  command.add_option("--rays", options.rays, "Which ray sets, between commas")
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "Numbers of threads, between commas")
+      ->capture_default_str();
+  command
+      .add_option("--api", options.apis,
+                  "single: one ray a call; batch: all in one, against Embree's best entrance")
+      ->capture_default_str();
+  command
+      .add_option("--isa", options.isas,
+                  "Instruction sets between commas: auto, scalar, sse, avx2, avx512")
+      ->capture_default_str();
+  command.add_option("--bvh-width", options.bvh_width, "Children a node; 0: the device's default")
+      ->check(one_of({"0", "4", "8", "16"}))
+      ->capture_default_str();
+  command.add_option("--rounds", options.rounds, "Runs of each side; their medians count")
+      ->check(whole_number(1, 1000))
+      ->capture_default_str();
+  command.add_option("--ray-count", options.ray_count, "Rays of a set")
+      ->check(whole_number(1, uint64_t{1} << 28))
+      ->capture_default_str();
+  command
+      .add_option("--param", options.parameters,
+                  "A parameter of the build as NAME=VALUE, such as bin_count=16; may be repeated")
+      ->expected(1)
+      ->take_all();
+  command.add_option("--json", options.json, "Write all rows to this file, too");
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("bench", "Measure builds and rays next to Embree, on the same rays");
+  const auto options = std::make_shared<BenchOptions>();
+  add_scene_options(*command, *options);
+  add_measuring_options(*command, *options);
+  command->footer("Exits with 1 when answers differ between rounds, instruction sets or threads.");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace kiwami::tools

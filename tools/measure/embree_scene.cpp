@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/embree_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+
+namespace kiwami::tools {
+namespace {
+
+bool count_bytes(void* user, ssize_t bytes, bool) {
+  static_cast<std::atomic<int64_t>*>(user)->fetch_add(bytes);
+  return true;
+}
+
+void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, const void* data,
+                 size_t element_bytes, size_t count) {
+  if (count == 0) return;
+  // Embree pads its own buffers, which its loads beyond the last vertex need.
+  void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, element_bytes, count);
+  if (buffer == nullptr) throw std::bad_alloc();
+  std::memcpy(buffer, data, element_bytes * count);
+}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene(const SceneFile& file, const std::string& config, bool robust) {
+  device_ = rtcNewDevice(config.c_str());
+  if (device_ == nullptr) {
+    throw std::runtime_error("Embree cannot make a device of '" + config + "'");
+  }
+  scene_ = rtcNewScene(device_);
+  if (robust) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  try {
+    for (const Mesh& mesh : file.meshes) attach(mesh);
+    commit();
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+EmbreeScene::~EmbreeScene() { release(); }
+
+uint64_t EmbreeScene::bytes() const {
+  return static_cast<uint64_t>(std::max<int64_t>(0, bytes_.load()));
+}
+
+void EmbreeScene::attach(const Mesh& mesh) {
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices.data(), 12,
+              mesh.vertex_count());
+  fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.indices.data(), 12,
+              mesh.triangle_count());
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+void EmbreeScene::commit() {
+  rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
+  const auto start = std::chrono::steady_clock::now();
+  rtcCommitScene(scene_);
+  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) {
+    throw std::runtime_error("Embree cannot build the scene");
+  }
+}
+
+void EmbreeScene::release() {
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
+}
+
+}  // namespace kiwami::tools

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "scene/scene_file.h"
+
+namespace kiwami::tools {
+
+/// Owns an Embree device and a committed scene whose geometry i is mesh i of the file.
+class EmbreeScene {
+ public:
+  /// `config` is the device's, such as "threads=1,isa=avx2".
+  EmbreeScene(const SceneFile& file, const std::string& config, bool robust);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  RTCScene get() const { return scene_; }
+  double build_seconds() const { return build_seconds_; }
+  /// What Embree holds for the scene, its copies of the buffers aside.
+  uint64_t bytes() const;
+
+ private:
+  void attach(const Mesh& mesh);
+  void commit();
+  void release();
+
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  std::atomic<int64_t> bytes_{0};
+  double build_seconds_ = 0.0;
+};
+
+}  // namespace kiwami::tools
