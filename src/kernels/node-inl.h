@@ -11,7 +11,7 @@ namespace {
 /// The slots whose boxes the ray meets between its tmin and best, and the distances at which it
 /// enters them. No operand is NaN: offsets are finite and boxes are bounded.
 template <int N>
-inline uint32_t test_boxes(const WideNode<N>& node, const SlabRay<N>& ray, vfloat<N> best,
+inline uint32_t test_boxes(const WideNode<N>& node, const SlabRay<N>& ray, float best,
                            vfloat<N>& entry) {
   const auto planes = [&](size_t offset) {
     const auto* bytes = reinterpret_cast<const unsigned char*>(node.bounds);
@@ -24,8 +24,10 @@ inline uint32_t test_boxes(const WideNode<N>& node, const SlabRay<N>& ray, vfloa
   const auto far_distance = [&](int axis) {
     return multiply_add(planes(ray.planes->far[axis]), ray.reciprocal[axis], ray.far_offset[axis]);
   };
-  entry = max(max(near_distance(0), near_distance(1)), max(near_distance(2), ray.tmin));
-  const vfloat<N> exit = min(min(far_distance(0), far_distance(1)), min(far_distance(2), best));
+  entry =
+      max(max(near_distance(0), near_distance(1)), max(near_distance(2), broadcast<N>(ray.tmin)));
+  const vfloat<N> exit =
+      min(min(far_distance(0), far_distance(1)), min(far_distance(2), broadcast<N>(best)));
   return less_equal(entry, exit);
 }
 

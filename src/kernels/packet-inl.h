@@ -147,7 +147,7 @@ inline bool continue_alone(const TreeView& tree, const PacketSlabs<N>& packet, i
     return spread<N>(load<4>(four));
   };
   const SlabRay<N> ray{lanes(packet.reciprocal), lanes(packet.near_offset),
-                       lanes(packet.far_offset), broadcast<N>(packet.tmin[i]), packet.planes};
+                       lanes(packet.far_offset), packet.tmin[i], packet.planes};
   NoProbe probe;
   return traverse<N>(tree, start, ray, query, probe);
 }

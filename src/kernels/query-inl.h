@@ -35,20 +35,14 @@ template <int N>
 struct QueryBase {
   const SceneView* scene;
   const ScalarRay* scalar;
-  vfloat<N> nearest;  ///< scaled and widened: rejects triangles before their distance is known
-  vfloat<N> best;     ///< the same for the far end; the closest hit draws it nearer
-  float best_bound;   ///< best, as one float
+  float nearest_bound;  ///< scaled and widened: rejects triangles before their distance is known
+  float best_bound;     ///< the same for the far end; the closest hit draws it nearer
 
   void begin(const SceneView& scene_view, const ScalarRay& ray) {
     scene = &scene_view;
     scalar = &ray;
-    nearest = broadcast<N>(scaled_lower(ray, ray.tmin));
-    set_best(ray.tmax);
-  }
-
-  void set_best(float t) {
-    best_bound = scaled_upper(*scalar, t);
-    best = broadcast<N>(best_bound);
+    nearest_bound = scaled_lower(ray, ray.tmin);
+    best_bound = scaled_upper(ray, ray.tmax);
   }
 
   /// Calls accept(lane, t) for each visible triangle of the lanes that the ray meets between tmin
@@ -56,7 +50,8 @@ struct QueryBase {
   template <typename Probe, typename Accept>
   bool for_each_hit(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe, Accept accept) {
     ShearedBlock<N> sheared;
-    uint32_t inside = test_inside<N>(leaf, *scalar, nearest, best, lanes, sheared, probe);
+    uint32_t inside = test_inside<N>(leaf, *scalar, broadcast<N>(nearest_bound),
+                                     broadcast<N>(best_bound), lanes, sheared, probe);
     if (inside == 0) return false;
     float t[N], determinant[N];
     compute_distances<N>(sheared, *scalar, inside, t, determinant);
@@ -102,7 +97,7 @@ struct ClosestHitQuery : QueryBase<N> {
       }
       return false;
     });
-    if (is_nearer) this->set_best(best_t);
+    if (is_nearer) this->best_bound = scaled_upper(*this->scalar, best_t);
     return false;
   }
 

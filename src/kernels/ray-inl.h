@@ -151,7 +151,7 @@ struct SlabRay {
   Uniform4<N> reciprocal;
   Uniform4<N> near_offset;
   Uniform4<N> far_offset;
-  vfloat<N> tmin;
+  float tmin;  ///< a lower bound, scaled
   const PlaneOffsets<N>* planes;
 };
 
@@ -193,7 +193,7 @@ inline void set_up_slabs(const ScalarRay& ray, const TreeView& tree, SlabRay<N>&
   out.near_offset = spread<N>(slabs.near_offset);
   out.far_offset = spread<N>(slabs.far_offset);
   out.planes = &kPlaneOffsets<N>[slabs.backward];
-  out.tmin = broadcast<N>(scaled_lower(ray, ray.tmin));
+  out.tmin = scaled_lower(ray, ray.tmin);
 }
 
 }  // namespace

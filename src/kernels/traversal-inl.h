@@ -109,7 +109,7 @@ inline bool traverse(const TreeView& tree, const StackEntry& start, const SlabRa
       probe.on_node();
       const WideNode<N>& node = nodes[current.child];
       vfloat<N> entry;
-      const uint32_t hits = test_boxes(node, ray, query.best, entry) & current.mask;
+      const uint32_t hits = test_boxes(node, ray, query.best_bound, entry) & current.mask;
       if (hits != 0) {
         float entries[N];
         store(entries, entry);
