@@ -26,6 +26,7 @@ class SceneErrors : public testing::Test {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
     expect_failure({"verify", scene}, word);
     expect_failure({"demo", scene}, word);
+    expect_failure({"bench", scene}, word);
   }
 
   TemporaryFolder folder_;

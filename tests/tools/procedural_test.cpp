@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace kiwami::tools {
@@ -87,6 +88,47 @@ TEST(Procedural, StadiumSpansManyDecadesOfArea) {
   EXPECT_TRUE(is_closed(scene->meshes[0]));
 }
 
+TEST(Procedural, HairballHasExactlyItsTrianglesAndTheyAreThin) {
+  for (const uint64_t count : {1u, 39u, 40u, 41u, 1000u}) {
+    const std::optional<SceneFile> scene =
+        make_procedural_scene("hairball:" + std::to_string(count));
+    ASSERT_TRUE(scene.has_value());
+    EXPECT_EQ(scene->triangle_count(), count);
+    const Mesh& mesh = scene->meshes[0];
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+      // The longest side of a triangle that is as thin is many times its area's root.
+      EXPECT_GT(triangle_area(mesh, i), 0.0);
+      EXPECT_LT(std::sqrt(triangle_area(mesh, i)), 0.2 * 0.045);
+    }
+  }
+}
+
+TEST(Procedural, RoomHasHundredsOfCopiesOfSeveralMeshesWithinItsWalls) {
+  const std::optional<SceneFile> scene = make_procedural_scene("room:50000");
+  ASSERT_TRUE(scene.has_value());
+  EXPECT_GE(scene->triangle_count(), 50000u);
+  EXPECT_LT(scene->triangle_count(), 75000u);
+  EXPECT_GE(scene->meshes.size(), 5u);
+  EXPECT_GE(scene->instances.size(), 200u);
+  const SceneFile world = flatten(*scene);
+  EXPECT_EQ(world.triangle_count(), scene->triangle_count());
+  for (const Mesh& mesh : world.meshes) {
+    for (size_t i = 0; i < mesh.vertices.size(); i += 3) {
+      const bool inside = mesh.vertices[i] >= 0 && mesh.vertices[i] <= 12 &&
+                          mesh.vertices[i + 1] >= 0 && mesh.vertices[i + 1] <= 4 &&
+                          mesh.vertices[i + 2] >= 0 && mesh.vertices[i + 2] <= 9;
+      ASSERT_TRUE(inside) << mesh.name;
+    }
+  }
+}
+
+TEST(Procedural, LargeTerrainHasFourMillionTriangles) {
+  const std::optional<SceneFile> scene = make_procedural_scene("terrain");
+  ASSERT_TRUE(scene.has_value());
+  EXPECT_NEAR(static_cast<double>(scene->triangle_count()), 4e6, 1e4);
+  EXPECT_TRUE(scene->view.has_value());
+}
+
 TEST(Procedural, OtherNamesAreNoScenes) {
   for (const char* name : {"", "a.obj", "sphere", "C:file.tri", "stadium.obj", "cube:3"}) {
     EXPECT_FALSE(make_procedural_scene(name).has_value()) << name;
@@ -96,7 +138,8 @@ TEST(Procedural, OtherNamesAreNoScenes) {
 TEST(Procedural, NumbersOutOfBoundsAreRefused) {
   for (const char* name :
        {"sphere:10", "sphere:-1", "sphere:1:2", "sphere:1 ", "sphere:", "terrain:0", "terrain:4097",
-        "soup:1", "soup:0:1", "soup:1:", "soup:1:2:3", "soup:99999999999999999999:1"}) {
+        "soup:1", "soup:0:1", "soup:1:", "soup:1:2:3", "soup:99999999999999999999:1", "hairball:0",
+        "hairball:", "hairball:5:5", "room:0", "room:-1", "room:100000001"}) {
     EXPECT_THROW(make_procedural_scene(name), SceneError) << name;
   }
 }

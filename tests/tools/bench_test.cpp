@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// `kiwami bench` measures what it is told, and its rows are complete.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "run_command.h"
+
+namespace kiwami_tests {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::vector<std::string> kQuick = {"--ray-count", "2000", "--rounds", "1"};
+
+CommandResult bench(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "bench");
+  arguments.insert(arguments.end(), kQuick.begin(), kQuick.end());
+  return run_command(arguments);
+}
+
+/// The rows of a bench that must succeed.
+Json bench_rows(std::vector<std::string> arguments) {
+  const TemporaryFolder folder;
+  arguments.insert(arguments.end(), {"--json", folder / "rows.json"});
+  const CommandResult result = bench(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
+  EXPECT_EQ(result.errors, "");
+  return Json::parse(read_bytes(folder / "rows.json"), nullptr, false);
+}
+
+bool has_embree() {
+  return Json::parse(run_command({"info", "--json"}).output).at("embree").get<std::string>() != "";
+}
+
+void expect_positive(const Json& row, const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) {
+    ASSERT_TRUE(row.contains(key)) << key << " of " << row;
+    ASSERT_TRUE(row.at(key).is_number()) << key << " of " << row;
+    EXPECT_GT(row.at(key).get<double>(), 0.0) << key << " of " << row;
+  }
+}
+
+TEST(Bench, ExplainsItsOptions) {
+  const CommandResult help = run_command({"bench", "--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* option :
+       {"SCENE", "--vs", "--robust", "--rays", "--threads", "--api", "--isa", "--bvh-width",
+        "--rounds", "--ray-count", "--param", "--json", "--list", "--scenes-folder", "--eye"}) {
+    EXPECT_NE(help.output.find(option), std::string::npos) << option;
+  }
+}
+
+TEST(Bench, WritesARowForEachBuildAndEachCase) {
+  const Json rows = bench_rows({"sphere:3", "--threads", "1", "--vs", "none"});
+  ASSERT_TRUE(rows.is_array());
+  ASSERT_EQ(rows.size(), 1u + 2 * 6);
+  std::set<std::string> cases;
+  for (const Json& row : rows) {
+    EXPECT_EQ(row.at("scene"), "sphere:3");
+    EXPECT_EQ(row.at("triangles"), 1280);
+    EXPECT_EQ(row.at("threads"), 1);
+    EXPECT_TRUE(row.at("isa").is_string());
+    expect_positive(row, {"width"});
+    EXPECT_FALSE(row.contains("peer")) << row;
+    if (row.contains("build_ms")) {
+      expect_positive(row, {"build_ms", "bytes_per_triangle", "peak_bytes_per_triangle", "sah"});
+      EXPECT_GE(row.at("peak_bytes_per_triangle"), row.at("bytes_per_triangle"));
+      continue;
+    }
+    expect_positive(row, {"mrays"});
+    EXPECT_EQ(row.at("hits_hash").get<std::string>().size(), 16u);
+    const std::string rays = row.at("rays");
+    EXPECT_EQ(row.at("any_hit"), rays == "ao" || rays == "shadow");
+    cases.insert(row.at("api").get<std::string>() + " " + rays);
+  }
+  EXPECT_EQ(cases.size(), 12u);
+}
+
+TEST(Bench, ComparesWithEmbree) {
+  if (!has_embree()) GTEST_SKIP() << "built without Embree";
+  const Json rows = bench_rows({"terrain:40", "--threads", "1", "--vs", "embree"});
+  ASSERT_EQ(rows.size(), 13u);
+  for (const Json& row : rows) {
+    EXPECT_TRUE(row.at("peer").get<std::string>().starts_with("Embree 3")) << row;
+    if (row.contains("build_ms")) {
+      expect_positive(row, {"peer_build_ms", "peer_bytes_per_triangle"});
+      continue;
+    }
+    expect_positive(row, {"peer_mrays", "ratio"});
+    const std::string entrance = row.at("peer_entrance");
+    const std::string call = row.at("any_hit") ? "rtcOccluded" : "rtcIntersect";
+    EXPECT_TRUE(entrance.starts_with(call)) << entrance;
+    if (row.at("api") == "single") {
+      EXPECT_EQ(entrance, call + "1");
+    }
+    EXPECT_LT(row.at("peer_disagreements"), 20) << row;
+  }
+  const Json robust =
+      bench_rows({"sphere:2", "--threads", "1", "--vs", "embree", "--robust", "--api", "single"});
+  EXPECT_TRUE(robust.at(0).at("peer").get<std::string>().ends_with(" robust"));
+}
+
+TEST(Bench, AnswersTheSameOnEveryIsaWidthAndApi) {
+  std::map<std::string, std::set<std::string>> hashes;
+  for (const std::string width : {"4", "8", "16"}) {
+    for (const std::string isa : {"scalar", "auto"}) {
+      for (const Json& row : bench_rows({"room:20000", "--isa", isa, "--bvh-width", width,
+                                         "--threads", "1", "--vs", "none"})) {
+        EXPECT_EQ(row.at("width").dump(), width);
+        if (row.contains("hits_hash")) hashes[row.at("rays")].insert(row.at("hits_hash"));
+      }
+    }
+  }
+  EXPECT_EQ(hashes.size(), 6u);
+  std::set<std::string> different;
+  for (const auto& [rays, of_rays] : hashes) {
+    EXPECT_EQ(of_rays.size(), 1u) << rays;
+    different.insert(of_rays.begin(), of_rays.end());
+  }
+  EXPECT_EQ(different.size(), hashes.size());
+}
+
+TEST(Bench, MeasuresOnlyWhatItIsTold) {
+  const Json rows =
+      bench_rows({"sphere:2", "stadium", "--rays", "random,ao", "--api", "batch", "--isa", "scalar",
+                  "--threads", "1", "--vs", "none", "--param", "bin_count=8"});
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_EQ(rows.at(1).at("rays"), "random");
+  EXPECT_EQ(rows.at(2).at("rays"), "ao");
+  EXPECT_EQ(rows.at(3).at("scene"), "stadium");
+  for (const Json& row : rows) EXPECT_EQ(row.at("isa"), "scalar");
+}
+
+TEST(Bench, ParametersChangeTheTreeAndNotTheAnswers) {
+  const std::vector<std::string> common = {"soup:3000:1", "--rays", "random", "--threads", "1",
+                                           "--vs",        "none",   "--api",  "batch"};
+  std::vector<std::string> leaves_of_one = common;
+  leaves_of_one.insert(leaves_of_one.end(), {"--param", "max_leaf_size=1", "--param", "2=0"});
+  const Json usual = bench_rows(common);
+  const Json changed = bench_rows(leaves_of_one);
+  EXPECT_NE(usual.at(0).at("sah"), changed.at(0).at("sah"));
+  EXPECT_EQ(usual.at(1).at("hits_hash"), changed.at(1).at("hits_hash"));
+}
+
+TEST(Bench, TheCameraDecidesThePrimaryRays) {
+  const auto hash = [](const std::vector<std::string>& view) {
+    std::vector<std::string> arguments = {"terrain:20", "--rays", "primary", "--threads", "1",
+                                          "--vs",       "none",   "--api",   "batch"};
+    arguments.insert(arguments.end(), view.begin(), view.end());
+    return bench_rows(arguments).at(1).at("hits_hash").get<std::string>();
+  };
+  const std::set<std::string> hashes = {
+      hash({}), hash({"--eye", "0,3,1"}), hash({"--eye", "0,3,1", "--target", "0.1,0,0"}),
+      hash({"--eye", "0,3,1", "--fov", "20"}), hash({"--eye", "0,3,1", "--up", "1,0,0"})};
+  EXPECT_EQ(hashes.size(), 5u);
+}
+
+TEST(Bench, EndsWithTheGeometricMeans) {
+  if (!has_embree()) GTEST_SKIP() << "built without Embree";
+  const CommandResult result = bench({"sphere:2", "--threads", "1"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  for (const char* group : {"single, 1 thread ", "batch, 1 thread ", "batch, 1 thread, any hit ",
+                            "single, 1 thread, closest hit "}) {
+    EXPECT_NE(result.output.find(group), std::string::npos) << group << "\n" << result.output;
+  }
+}
+
+TEST(Bench, WrongArgumentsAreRefusedInOneSentence) {
+  const TemporaryFolder folder;
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{}, "SCENE"},
+      {{"sphere:1", "--rays", "primary,beams"}, "beams"},
+      {{"sphere:1", "--rays", "primary,,ao"}, "--rays"},
+      {{"sphere:1", "--rays", "ao,ao"}, "--rays"},
+      {{"sphere:1", "--threads", "0"}, "--threads"},
+      {{"sphere:1", "--threads", "1,two"}, "two"},
+      {{"sphere:1", "--threads", "1000"}, "processors"},
+      {{"sphere:1", "--api", "double"}, "double"},
+      {{"sphere:1", "--isa", "mmx"}, "mmx"},
+      {{"sphere:1", "--bvh-width", "5"}, "--bvh-width"},
+      {{"sphere:1", "--vs", "gpu"}, "--vs"},
+      {{"sphere:1", "--rounds", "0"}, "--rounds"},
+      {{"sphere:1", "--ray-count", "-5"}, "--ray-count"},
+      {{"sphere:1", "--param", "speed=9"}, "speed"},
+      {{"sphere:1", "--param", "bin_count"}, "bin_count"},
+      {{"sphere:1", "--param", "bin_count=many"}, "many"},
+      {{"sphere:1", "--param", "bin_count=100000"}, "100000"},
+      {{"sphere:1", "--param", "=3"}, "parameter"},
+      {{"sphere:1", "--param", "900=3"}, "900"},
+      {{"sphere:1", "--list", "best"}, "--list"},
+      {{"--list", "judging", "--scenes-folder", folder / "none"}, "there is no file"},
+      {{"sphere:1", "sphere:2", "--eye", "1,2,3"}, "--eye"},
+      {{"sphere:1", "--eye", "1,2"}, "--eye"},
+      {{"sphere:1", "--eye", "9,9,9", "--target", "18,18,17"}, "sees nothing"},
+      {{"sphere:1", "--json", "/nonexistent-folder/a.json"}, "--json"},
+      {{folder / "none.obj"}, "there is no file"},
+      {{"hairball:0"}, "N"},
+      {{"room:x"}, "N"}};
+  for (const auto& [arguments, word] : cases) {
+    const CommandResult result = bench(arguments);
+    EXPECT_EQ(complaint_about_failure(result), "") << word;
+    EXPECT_NE(result.errors.find(word), std::string::npos) << word << "\n" << result.errors;
+  }
+}
+
+TEST(Bench, KnowsTheScenesOfItsLists) {
+  const Json known =
+      Json::parse(read_bytes(std::string(KIWAMI_SOURCE_DIR) + "/benchmarks/scenes.json"));
+  std::set<std::string> tuning;
+  for (const Json& scene : known.at("lists").at("tuning")) tuning.insert(scene);
+  for (const Json& scene : known.at("lists").at("judging")) {
+    EXPECT_EQ(tuning.count(scene), 0u) << scene << " is judged by and tuned on";
+  }
+  for (const auto& [name, camera] : known.at("cameras").items()) {
+    for (const char* key : {"eye", "target", "up"}) EXPECT_EQ(camera.at(key).size(), 3u) << name;
+    expect_positive(camera, {"fov"});
+  }
+}
+
+TEST(Bench, APublicSceneHasItsOwnCamera) {
+  const std::string path = shared_scene("sponza.tri.gz");
+  if (path.empty()) GTEST_SKIP() << "SKIPPED: the shared scenes are absent";
+  const TemporaryFolder folder;
+  std::filesystem::copy_file(path, folder / "other.tri.gz");
+  const std::vector<std::string> common = {"--rays", "primary", "--threads", "1",
+                                           "--vs",   "none",    "--api",     "batch"};
+  const auto hash = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), common.begin(), common.end());
+    return bench_rows(arguments).at(1).at("hits_hash").get<std::string>();
+  };
+  const std::string known = hash({path});
+  EXPECT_NE(known, hash({folder / "other.tri.gz"}));
+  EXPECT_EQ(known, hash({folder / "other.tri.gz", "--eye", "-13,3,0", "--target", "10,4.5,0",
+                         "--up", "0,1,0", "--fov", "65"}));
+}
+
+}  // namespace
+}  // namespace kiwami_tests
