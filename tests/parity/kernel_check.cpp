@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parity/kernel_check.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
 #include "support/ray_generator.h"
 #include "support/report.h"
 
@@ -21,7 +25,56 @@ std::string count_difference(const std::vector<uint32_t>& counts, const Expected
   return "";
 }
 
+/// The octant into which a ray points; 8 for one that may be no ray at all.
+int octant_of(const kiwami_ray& ray) {
+  const float sum = ray.origin_x + ray.origin_y + ray.origin_z + ray.direction_x + ray.direction_y +
+                    ray.direction_z;
+  const bool is_zero = ray.direction_x == 0 && ray.direction_y == 0 && ray.direction_z == 0;
+  if (!std::isfinite(sum) || is_zero || !(ray.tmin <= ray.tmax) || ray.mask == 0) return 8;
+  return int{std::signbit(ray.direction_x)} + 2 * int{std::signbit(ray.direction_y)} +
+         4 * int{std::signbit(ray.direction_z)};
+}
+
+std::string difference_in_order(const NamedKernels& named, const kiwami::SceneView& view,
+                                const Expected& expected) {
+  const auto& kernels = named.kernels;
+  const auto& rays = expected.rays;
+  kiwami::TraversalCounters counters{};
+  std::string found = difference(run_closest_hit(kernels.closest_hit, view, rays), expected);
+  if (found.empty()) found = difference(run_any_hit(kernels.any_hit, view, rays), expected);
+  if (found.empty()) {
+    found = count_difference(run_all_hits(kernels.all_hits, view, rays), expected);
+  }
+  if (found.empty()) {
+    found = difference(run_counted_closest_hit(kernels.closest_hit_counted, view, rays, counters),
+                       expected);
+  }
+  if (found.empty()) {
+    found =
+        difference(run_counted_any_hit(kernels.any_hit_counted, view, rays, counters), expected);
+  }
+  if (found.empty() && counters.margin_violations) {
+    found = std::to_string(counters.margin_violations) + " hits outside their leaf's box";
+  }
+  return found;
+}
+
 }  // namespace
+
+Expected grouped_by_octant(const Expected& expected) {
+  std::vector<size_t> order(expected.rays.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return octant_of(expected.rays[a]) < octant_of(expected.rays[b]);
+  });
+  Expected grouped;
+  for (const size_t i : order) {
+    grouped.rays.push_back(expected.rays[i]);
+    grouped.hits.push_back(expected.hits[i]);
+    grouped.counts.push_back(expected.counts[i]);
+  }
+  return grouped;
+}
 
 Expected expected_of(const PlainOracle& oracle, const Scene& scene, uint64_t count, Random random) {
   Expected expected;
@@ -58,24 +111,10 @@ std::string difference(const std::vector<uint8_t>& any, const Expected& expected
 
 std::string difference(const NamedKernels& named, const kiwami::SceneView& view,
                        const Expected& expected) {
-  const auto& kernels = named.kernels;
-  const auto& rays = expected.rays;
-  kiwami::TraversalCounters counters{};
-  std::string found = difference(run_closest_hit(kernels.closest_hit, view, rays), expected);
-  if (found.empty()) found = difference(run_any_hit(kernels.any_hit, view, rays), expected);
+  std::string found = difference_in_order(named, view, expected);
   if (found.empty()) {
-    found = count_difference(run_all_hits(kernels.all_hits, view, rays), expected);
-  }
-  if (found.empty()) {
-    found = difference(run_counted_closest_hit(kernels.closest_hit_counted, view, rays, counters),
-                       expected);
-  }
-  if (found.empty()) {
-    found =
-        difference(run_counted_any_hit(kernels.any_hit_counted, view, rays, counters), expected);
-  }
-  if (found.empty() && counters.margin_violations) {
-    found = std::to_string(counters.margin_violations) + " hits outside their leaf's box";
+    found = difference_in_order(named, view, grouped_by_octant(expected));
+    if (!found.empty()) found = "grouped by octant: " + found;
   }
   return found.empty() ? "" : named.name + ": " + found;
 }

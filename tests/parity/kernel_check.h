@@ -26,7 +26,12 @@ Expected expected_of(const PlainOracle& oracle, const Scene& scene, uint64_t cou
 std::string difference(const std::vector<kiwami_hit>& hits, const Expected& expected);
 std::string difference(const std::vector<uint8_t>& any, const Expected& expected);
 
-/// The first ray on which some kernel differs, or a broken margin; "" when there is neither.
+/// The same in an order in which rays that point into the same octant follow each other: kernels
+/// trace such runs together.
+Expected grouped_by_octant(const Expected& expected);
+
+/// The first ray on which some kernel differs, in the order given or grouped by octant, or a broken
+/// margin; "" when there is neither.
 std::string difference(const NamedKernels& named, const kiwami::SceneView& view,
                        const Expected& expected);
 
