@@ -46,7 +46,8 @@ std::vector<std::string> split(const std::string& option, const std::string& tex
     const size_t end = std::min(text.find(',', start), text.size());
     words.push_back(text.substr(start, end - start));
     if (words.back().empty() || std::count(words.begin(), words.end(), words.back()) > 1) {
-      throw UsageError(option + " is '" + text + "', expected different words between commas");
+      throw UsageError(format("%s is '%s', expected different words between commas", option.c_str(),
+                              text.c_str()));
     }
     start = end + 1;
   }

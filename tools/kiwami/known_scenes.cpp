@@ -10,8 +10,8 @@ namespace {
 
 /// The build has put benchmarks/scenes.json into the command, so that it works from anywhere.
 const nlohmann::ordered_json& known_scenes() {
-  static const nlohmann::ordered_json scenes = nlohmann::ordered_json::parse(kKnownScenesText);
-  return scenes;
+  static const nlohmann::ordered_json kScenes = nlohmann::ordered_json::parse(kKnownScenesText);
+  return kScenes;
 }
 
 Vec3 to_vector(const nlohmann::ordered_json& numbers) {

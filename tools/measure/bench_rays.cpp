@@ -79,9 +79,9 @@ std::vector<kiwami_ray> anywhere(const Box& box, size_t count) {
 }  // namespace
 
 const std::vector<std::string>& bench_ray_names() {
-  static const std::vector<std::string> names = {"primary", "bounce", "bounce_shuffled",
-                                                 "ao",      "shadow", "random"};
-  return names;
+  static const std::vector<std::string> kNames = {"primary", "bounce", "bounce_shuffled",
+                                                  "ao",      "shadow", "random"};
+  return kNames;
 }
 
 std::vector<BenchRays> make_bench_rays(const Tracer& tracer, const View& view, const Box& box,
