@@ -83,10 +83,11 @@ inline StackEntry* choose_nearest(const TreeView& tree, const WideNode<N>& node,
 
 /// Puts the first of the hit slots into next and the others onto the stack, in their order.
 template <int N>
-inline StackEntry* choose_first(const WideNode<N>& node, uint32_t hits, const float* entry,
-                                StackEntry* top, StackEntry& next) {
+inline StackEntry* choose_first(const TreeView& tree, const WideNode<N>& node, uint32_t hits,
+                                const float* entry, StackEntry* top, StackEntry& next) {
   for (; hits & (hits - 1);) {
     const int slot = 31 - __builtin_clz(hits);
+    prefetch<N>(tree, node.child[slot]);
     *top++ = child_of(node, slot, entry[slot]);
     hits ^= 1u << slot;
   }
@@ -116,7 +117,7 @@ inline bool traverse(const TreeView& tree, const StackEntry& start, const SlabRa
         if constexpr (Query::kOrdered) {
           top = choose_nearest(tree, node, hits, entries, top, current);
         } else {
-          top = choose_first(node, hits, entries, top, current);
+          top = choose_first(tree, node, hits, entries, top, current);
         }
         continue;
       }
