@@ -34,57 +34,78 @@ inline typename Query::Answer trace_one(const SceneView& scene, const kiwami_ray
   return query.answer();
 }
 
-/// Whether the next rays of a batch may go together: all traceable, and no axis along which some
-/// run backward and others forward.
+/// Rays of one octant that wait until they fill a packet.
 template <int N>
-inline bool is_packet(const kiwami_ray* rays) {
-  const auto backward = [](const kiwami_ray& ray) {
-    return sign_bits(load<4>(second_half(ray))) & 7u;
-  };
-  const uint32_t first = backward(rays[0]);
-  for (int i = 1; i < PacketSlabs<N>::kSize; ++i) {
-    if (backward(rays[i]) != first) return false;
-  }
-  for (int i = 0; i < PacketSlabs<N>::kSize; ++i) {
-    if (!is_traceable(rays[i])) return false;
-  }
-  return true;
-}
+struct Waiting {
+  static constexpr int kSize = PacketSlabs<N>::kSize;
+
+  int count = 0;
+  kiwami_ray rays[kSize];
+  size_t index[kSize];  ///< of the ray in its batch
+};
 
 template <typename Query, int N>
-inline void trace_packet(const SceneView& scene, const kiwami_ray* rays, const RayBatch& batch,
-                         size_t first) {
+inline void trace_packet(const SceneView& scene, const Waiting<N>& waiting, const RayBatch& batch) {
   constexpr int size = PacketSlabs<N>::kSize;
   ScalarRay scalars[size];
   Query queries[size];
   for (int i = 0; i < size; ++i) {
-    set_up_scalar(rays[i], scalars[i]);
+    set_up_scalar(waiting.rays[i], scalars[i]);
     queries[i].begin(scene, scalars[i]);
   }
   PacketSlabs<N> packet;
   set_up_packet<N>(scalars, scene.tree, packet);
   PacketTraversal<N, Query>{scene.tree, packet, queries}.run();
-  for (int i = 0; i < size; ++i) write_answer(batch, first + i, queries[i].answer());
+  for (int i = 0; i < size; ++i) write_answer(batch, waiting.index[i], queries[i].answer());
+}
+
+/// Traces the rays that wait: together if they fill a packet, alone otherwise.
+template <typename Query, int N>
+inline void flush(const SceneView& scene, Waiting<N>& waiting, const RayBatch& batch) {
+  if (waiting.count == waiting.kSize) {
+    trace_packet<Query, N>(scene, waiting, batch);
+  } else {
+    NoProbe probe;
+    for (int i = 0; i < waiting.count; ++i) {
+      const auto answer = trace_one<Query, N>(scene, waiting.rays[i], probe);
+      write_answer(batch, waiting.index[i], answer);
+    }
+  }
+  waiting.count = 0;
+}
+
+/// Traces rays of one octant together. Any-hit rays are collected from the whole batch: they gain
+/// even where they are incoherent, since a packet is in no hurry to reach the nearest hit. For the
+/// closest hit only rays that follow each other go together: those are likely to be coherent.
+template <typename Query, int N>
+__attribute__((noinline)) void trace_together(const SceneView& scene, const RayBatch& batch) {
+  Waiting<N> octants[8];
+  uint32_t last = 0;
+  for (size_t i = 0; i < batch.count; ++i) {
+    const kiwami_ray ray = read_ray(batch, i);
+    if (!is_traceable(ray)) {
+      write_answer(batch, i, Query::miss());
+      continue;
+    }
+    const uint32_t octant = sign_bits(load<4>(second_half(ray))) & 7u;
+    if (Query::kOrdered && octant != last) flush<Query, N>(scene, octants[last], batch);
+    last = octant;
+    Waiting<N>& waiting = octants[octant];
+    waiting.rays[waiting.count] = ray;
+    waiting.index[waiting.count] = i;
+    if (++waiting.count == waiting.kSize) flush<Query, N>(scene, waiting, batch);
+  }
+  for (Waiting<N>& waiting : octants) flush<Query, N>(scene, waiting, batch);
 }
 
 template <typename Query, int N>
 void trace(const SceneView& scene, const RayBatch& batch) {
-  constexpr size_t size = PacketSlabs<N>::kSize;
-  NoProbe probe;
-  size_t i = 0;
-  while (batch.count - i >= size && scene.tree.root_mask != 0) {
-    kiwami_ray rays[size];
-    for (size_t k = 0; k < size; ++k) rays[k] = read_ray(batch, i + k);
-    if (is_packet<N>(rays)) {
-      trace_packet<Query, N>(scene, rays, batch, i);
-    } else {
-      for (size_t k = 0; k < size; ++k) {
-        write_answer(batch, i + k, trace_one<Query, N>(scene, rays[k], probe));
-      }
-    }
-    i += size;
+  if (batch.count >= PacketSlabs<N>::kSize && scene.tree.root_mask != 0) {
+    trace_together<Query, N>(scene, batch);
+    return;
   }
-  for (; i < batch.count; ++i) {
+  NoProbe probe;
+  for (size_t i = 0; i < batch.count; ++i) {
     write_answer(batch, i, trace_one<Query, N>(scene, read_ray(batch, i), probe));
   }
 }

@@ -32,9 +32,6 @@ struct PacketSlabs {
   float least_tmin;
 };
 
-/// Fewer rays than this go on alone.
-constexpr int kLeastTogether = 3;
-
 template <int N>
 inline float least_of(const float* values) {
   float least = values[0];
@@ -156,6 +153,8 @@ inline bool continue_alone(const TreeView& tree, const PacketSlabs<N>& packet, i
 template <int N, typename Query>
 struct PacketTraversal {
   static constexpr int kSize = PacketSlabs<N>::kSize;
+  /// Fewer rays than this go on alone.
+  static constexpr int kLeastTogether = kSize * 3 / 8;
   static constexpr uint32_t kAll = kSize == 32 ? ~0u : (1u << kSize) - 1u;
 
   const TreeView& tree;
