@@ -48,20 +48,6 @@ inline uint32_t equal(vfloat<8> a, vfloat<8> b) {
       simde_mm256_movemask_ps(simde_mm256_cmp_ps(a.value, b.value, SIMDE_CMP_EQ_OQ)));
 }
 
-/// A broadcast from memory costs as much as a load, so the four stay scalar.
-template <int N>
-struct Uniform4 {
-  float lane[4];
-
-  vfloat<N> operator[](int i) const { return broadcast<N>(lane[i]); }
-};
-template <int N>
-inline Uniform4<N> spread(vfloat<4> a) {
-  Uniform4<N> result;
-  store(result.lane, a);
-  return result;
-}
-
 struct vdouble4 {
   simde__m256d value;
 };
@@ -81,3 +67,5 @@ inline vdouble4 operator/(vdouble4 a, vdouble4 b) { return {simde_mm256_div_pd(a
 }  // namespace
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami
+
+#include "scalar/uniform.h"

@@ -109,19 +109,6 @@ inline uint32_t first_bits(vfloat<4> a) {
   return bits;
 }
 
-template <int N>
-struct Uniform4 {
-  float lane[4];
-
-  vfloat<N> operator[](int i) const { return broadcast<N>(lane[i]); }
-};
-template <int N>
-inline Uniform4<N> spread(vfloat<4> a) {
-  Uniform4<N> result;
-  store(result.lane, a);
-  return result;
-}
-
 struct vdouble4 {
   double lane[4];
 };
@@ -157,3 +144,5 @@ inline vdouble4 operator/(vdouble4 a, vdouble4 b) {
 }  // namespace
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami
+
+#include "scalar/uniform.h"
