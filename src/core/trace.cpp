@@ -15,8 +15,8 @@ namespace {
 constexpr size_t kParallelCount = 4096;
 /// Rays that one task traces.
 constexpr size_t kBlockSize = 1024;
-/// Rays that are gathered at once, on the stack.
-constexpr size_t kChunkSize = 64;
+/// Rays that are gathered at once, on the stack: enough for kernels that trace rays together.
+constexpr size_t kChunkSize = 256;
 
 /// Calls body(begin, end) for all of count rays, in blocks on the device's threads if they are
 /// many.
