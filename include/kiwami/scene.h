@@ -24,9 +24,29 @@ enum {
   KIWAMI_PARAMETER_NODE_COST = 6,      /* cost of visiting a node, 0.01 to 100 */
   KIWAMI_PARAMETER_LEAF_COST = 7,      /* cost of testing a leaf block, 0.01 to 100 */
   KIWAMI_PARAMETER_VALIDATE_BUILD = 8, /* 1: commit runs the validator after each stage; 0 */
-  KIWAMI_PARAMETER_CONTRACTION = 9     /* how nodes of two children become wide: 0: the largest is
-                                        * opened first; 1: at the least cost of the whole tree */
+  KIWAMI_PARAMETER_CONTRACTION = 9,    /* how nodes of two children become wide:
+                                        * KIWAMI_CONTRACTION_* */
+  KIWAMI_PARAMETER_BUILDER = 10        /* how the tree of two children a node is made:
+                                        * KIWAMI_BUILDER_* */
 };
+
+/* The stages of a build that have several methods. */
+enum {
+  KIWAMI_STAGE_BUILDER = 1,    /* primitives to a binary tree, by KIWAMI_PARAMETER_BUILDER */
+  KIWAMI_STAGE_OPTIMIZER = 2,  /* changes to the binary tree, by kiwami_scene_set_optimizers */
+  KIWAMI_STAGE_CONTRACTION = 3 /* binary tree to wide tree, by KIWAMI_PARAMETER_CONTRACTION */
+};
+
+/* Methods by stage. The numbers are pinned; kiwami_method_name gives the name of each. */
+enum {
+  KIWAMI_BUILDER_BINNED_SAH = 0 /* top-down by the surface area heuristic over bins */
+};
+enum {
+  KIWAMI_CONTRACTION_SURFACE_AREA = 0, /* the largest child is opened first */
+  KIWAMI_CONTRACTION_OPTIMAL = 1       /* the least cost of the whole tree */
+};
+
+enum { KIWAMI_MAX_OPTIMIZERS = 8 };
 
 /* What a committed scene is made of. Counts are of the acceleration structure. */
 typedef struct kiwami_scene_info {
@@ -87,6 +107,19 @@ KIWAMI_API kiwami_result kiwami_scene_set_parameter(kiwami_scene* scene, uint32_
  * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_parameter_bounds(uint32_t parameter, double* lowest,
                                                  double* highest, double* preset);
+
+/* Sets which optimisers the next commit runs on the binary tree, one after the other.
+ *   methods   count numbers of KIWAMI_OPTIMIZER_*, copied; NULL only if count is 0
+ *   count     at most KIWAMI_MAX_OPTIMIZERS; 0: none, the default
+ *   errors    INVALID_ARGUMENT: scene or methods is NULL, count is too large, or a number is no
+ *             optimiser's
+ * [one thread per object]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_set_optimizers(kiwami_scene* scene, const uint32_t* methods,
+                                                     size_t count);
+
+/* The lower-case name of a method of one KIWAMI_STAGE_* ("binned_sah"), or NULL where no method has
+ * the number. Numbers are below 256. Static text. [any thread]; since 0.1 */
+KIWAMI_API const char* kiwami_method_name(uint32_t stage, uint32_t method);
 
 /* Builds the acceleration structure over the attached geometries, on the device's threads. On
  * error the last committed structure stays in use.

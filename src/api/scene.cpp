@@ -2,6 +2,7 @@
 #include "kiwami/scene.h"
 
 #include "api/check.h"
+#include "core/pipeline.h"
 #include "math/float_environment.h"
 
 using namespace kiwami;
@@ -76,6 +77,19 @@ kiwami_result kiwami_parameter_bounds(uint32_t parameter, double* lowest, double
     if (highest) *highest = bounds.highest;
     if (preset) *preset = bounds.preset;
   });
+}
+
+kiwami_result kiwami_scene_set_optimizers(kiwami_scene* scene, const uint32_t* methods,
+                                          size_t count) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    if (count != 0) check_not_null(methods, "methods");
+    object_of(scene)->parameters().set_optimizers({methods, count});
+  });
+}
+
+const char* kiwami_method_name(uint32_t stage, uint32_t method) {
+  return method_name(stage, method);
 }
 
 kiwami_result kiwami_scene_commit(kiwami_scene* scene) {

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <functional>
 
-#include "builders/binned_sah_builder.h"
 #include "bvh/verify_binary.h"
 #include "core/build_primitives.h"
 #include "core/error.h"
+#include "core/pipeline.h"
 #include "dispatch/dispatch.h"
 
 namespace kiwami {
@@ -30,22 +30,6 @@ ContractionMethod contraction_of(const SceneParameters& parameters) {
 uint32_t leaf_size_of(const SceneParameters& parameters, uint32_t width) {
   const uint32_t leaf_size = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
   return leaf_size != 0 ? std::min(leaf_size, width) : width;
-}
-
-BinnedSahBuilder::Config builder_config(const SceneParameters& parameters, uint32_t width) {
-  BinnedSahBuilder::Config config;
-  config.bin_count = parameters.whole(KIWAMI_PARAMETER_BIN_COUNT);
-  config.max_leaf_size = leaf_size_of(parameters, width);
-  // The optimal contraction collapses small subtrees to leaves itself. Leaves of half the size, or
-  // of four triangles, leave it nearly all of the choice (within 2.3 % of the cost from single
-  // triangles on real scenes) and a tree that is a third as large.
-  if (contraction_of(parameters) == ContractionMethod::kOptimal) {
-    config.max_leaf_size = std::min(config.max_leaf_size, std::max(4u, config.max_leaf_size / 2));
-  }
-  config.block_size = width;
-  config.node_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_NODE_COST]);
-  config.leaf_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_LEAF_COST]);
-  return config;
 }
 
 WideTreeConfig wide_config(const SceneParameters& parameters, uint32_t width) {
@@ -138,11 +122,12 @@ BinaryBvh CommittedScene::build_binary(const SceneParameters& parameters) {
   Array<BuildPrimitive> primitives =
       collect_build_primitives(source(), numbered_count_, memory_, *parallel_);
   triangle_count_ = primitives.size();
-  const BinnedSahBuilder::Config config = builder_config(parameters, tree_.width);
-  BinaryBvh binary = BinnedSahBuilder::build(std::move(primitives), config, memory_, *parallel_);
+  BinaryBvh binary = build_binary_bvh(std::move(primitives), source(), parameters, tree_.width,
+                                      memory_, *parallel_);
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     primitives = collect_build_primitives(source(), numbered_count_, memory_, *parallel_);
-    verify_binary_bvh(binary, primitives.data(), primitives.size(), config.max_leaf_size, memory_);
+    verify_binary_bvh(binary, primitives.data(), primitives.size(),
+                      binary_leaf_size_of(parameters, tree_.width), memory_);
   }
   return binary;
 }

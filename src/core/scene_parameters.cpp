@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene_parameters.h"
 
+#include <algorithm>
+
 #include "core/error.h"
+#include "core/pipeline.h"
 
 namespace kiwami {
 
 namespace {
 
-constexpr uint32_t kLastParameter = KIWAMI_PARAMETER_CONTRACTION;
+constexpr uint32_t kLastParameter = KIWAMI_PARAMETER_BUILDER;
 
 /// By number; number 0 names nothing.
 constexpr ParameterBounds kBounds[kLastParameter + 1] = {
@@ -20,7 +23,16 @@ constexpr ParameterBounds kBounds[kLastParameter + 1] = {
     {0.01, 100.0, 1.0, false},                    // LEAF_COST
     {0, 1, 0, true},                              // VALIDATE_BUILD
     {0, 1, 1, true},                              // CONTRACTION
+    {0, 255, 0, true},                            // BUILDER
 };
+
+/// Throws unless a method of this stage has the number.
+void check_method(uint32_t stage, const char* stage_name, double number) {
+  if (method_name(stage, static_cast<uint32_t>(number))) return;
+  throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+              "there is no %s of number %g, expected one that kiwami_method_name names", stage_name,
+              number);
+}
 
 bool is_whole(double value) {
   // Within the bounds of every parameter of whole numbers, so that the conversion is defined.
@@ -60,7 +72,21 @@ void SceneParameters::set(uint32_t parameter, double value) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "value is %g for KIWAMI_PARAMETER_BVH_WIDTH, expected 0, 4, 8 or 16", value);
   }
+  if (parameter == KIWAMI_PARAMETER_BUILDER) check_method(KIWAMI_STAGE_BUILDER, "builder", value);
+  if (parameter == KIWAMI_PARAMETER_CONTRACTION) {
+    check_method(KIWAMI_STAGE_CONTRACTION, "contraction", value);
+  }
   values_[parameter] = value;
+}
+
+void SceneParameters::set_optimizers(std::span<const uint32_t> methods) {
+  if (methods.size() > KIWAMI_MAX_OPTIMIZERS) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "count is %zu, expected at most %d optimizers",
+                methods.size(), KIWAMI_MAX_OPTIMIZERS);
+  }
+  for (const uint32_t method : methods) check_method(KIWAMI_STAGE_OPTIMIZER, "optimizer", method);
+  std::copy(methods.begin(), methods.end(), optimizers_);
+  optimizer_count_ = methods.size();
 }
 
 }  // namespace kiwami

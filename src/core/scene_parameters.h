@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "kiwami/scene.h"
 
@@ -24,12 +25,18 @@ class SceneParameters {
   /// Throws Error(INVALID_ARGUMENT) for an unknown parameter or a value out of bounds.
   void set(uint32_t parameter, double value);
 
+  /// Throws Error(INVALID_ARGUMENT) for too many, or for a number that is no optimiser's.
+  void set_optimizers(std::span<const uint32_t> methods);
+  std::span<const uint32_t> optimizers() const { return {optimizers_, optimizer_count_}; }
+
   double operator[](uint32_t parameter) const { return values_[parameter]; }
   /// The value of a parameter of whole numbers.
   uint32_t whole(uint32_t parameter) const { return static_cast<uint32_t>(values_[parameter]); }
 
  private:
-  double values_[KIWAMI_PARAMETER_CONTRACTION + 1];
+  double values_[KIWAMI_PARAMETER_BUILDER + 1];
+  uint32_t optimizers_[KIWAMI_MAX_OPTIMIZERS];
+  size_t optimizer_count_ = 0;
 };
 
 }  // namespace kiwami

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the numbers of methods to the calls: primitives to a binary tree, and what improves it.
+#pragma once
+
+#include "bvh/binary_bvh.h"
+#include "bvh/triangle_source.h"
+#include "core/scene_parameters.h"
+#include "parallel/parallel.h"
+
+namespace kiwami {
+
+/// The name of a method of a KIWAMI_STAGE_*; nullptr where there is none of this number.
+const char* method_name(uint32_t stage, uint32_t method);
+
+/// The most primitives that a leaf of the binary tree owns, for a wide tree of this width.
+uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width);
+
+/// Runs the builder and the optimisers that the parameters name. The primitives are those of the
+/// source that can be hit.
+BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource& source,
+                           const SceneParameters& parameters, uint32_t width, Memory& memory,
+                           const Parallel& parallel);
+
+}  // namespace kiwami
