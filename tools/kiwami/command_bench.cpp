@@ -32,6 +32,7 @@ struct BenchOptions {
   std::string apis = "single,batch";
   std::string isas = "auto";
   uint32_t bvh_width = 0;
+  PipelineOptions pipeline;
   uint32_t rounds = 5;
   uint64_t ray_count = 1u << 20;
   std::vector<std::string> parameters;
@@ -41,15 +42,11 @@ struct BenchOptions {
 
 /// The words between the commas; `option` is named when one is empty or comes twice.
 std::vector<std::string> split(const std::string& option, const std::string& text) {
-  std::vector<std::string> words;
-  for (size_t start = 0; start <= text.size();) {
-    const size_t end = std::min(text.find(',', start), text.size());
-    words.push_back(text.substr(start, end - start));
-    if (words.back().empty() || std::count(words.begin(), words.end(), words.back()) > 1) {
-      throw UsageError(format("%s is '%s', expected different words between commas", option.c_str(),
-                              text.c_str()));
-    }
-    start = end + 1;
+  std::vector<std::string> words = split_words(option, text);
+  for (const std::string& word : words) {
+    if (std::count(words.begin(), words.end(), word) == 1) continue;
+    throw UsageError(format("%s is '%s', expected different words between commas", option.c_str(),
+                            text.c_str()));
   }
   return words;
 }
@@ -105,7 +102,7 @@ BenchSettings make_settings(const BenchOptions& options) {
   for (const std::string& isa : split("--isa", options.isas)) {
     settings.isas.push_back(isa_of_name(isa));
   }
-  settings.build.bvh_width = options.bvh_width;
+  settings.build = options.pipeline.build_options(options.bvh_width);
   for (const std::string& text : options.parameters) {
     settings.build.parameters.push_back(parse_parameter(text));
   }
@@ -210,6 +207,7 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
   command.add_option("--bvh-width", options.bvh_width, "Children a node; 0: the device's default")
       ->check(one_of({"0", "4", "8", "16"}))
       ->capture_default_str();
+  add_pipeline_options(command, options.pipeline);
   command.add_option("--rounds", options.rounds, "Runs of each side; their medians count")
       ->check(whole_number(1, 1000))
       ->capture_default_str();

@@ -25,6 +25,7 @@ struct RenderOptions {
   uint32_t bounces = 4;
   ViewOptions view;
   TraceOptions trace;
+  PipelineOptions pipeline;
 };
 
 RenderMode parse_mode(const std::string& name) {
@@ -63,7 +64,7 @@ void run_render(const RenderOptions& options) {
   const Size size = parse_size("--size", options.size);
   const Device device = options.trace.make_device();
   const SceneFile file = flatten(load_scene(options.scene));
-  const BuiltScene scene(device, file, options.trace.build_options());
+  const BuiltScene scene(device, file, options.pipeline.build_options(options.trace.bvh_width));
   print_build(file, device, scene.info());
 
   const Box box = bounds_of(scene.info());
@@ -116,6 +117,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   add_view_options(*command, options->view);
   add_trace_options(*command, options->trace);
+  add_pipeline_options(*command, options->pipeline);
   command->callback([options, &exit_code] {
     run_render(*options);
     exit_code = 0;

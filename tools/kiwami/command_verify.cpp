@@ -13,6 +13,7 @@ struct VerifyOptions {
   std::string scene;
   uint64_t rays = 20000;
   uint64_t seed = 1;
+  PipelineOptions pipeline;
 };
 
 constexpr int kDifferenceFound = 1;
@@ -22,7 +23,7 @@ int run_verify(const VerifyOptions& options) {
   std::printf("%s: %s triangles, seed %llu\n", options.scene.c_str(),
               grouped(file.triangle_count()).c_str(),
               static_cast<unsigned long long>(options.seed));
-  Verifier verifier(file, options.rays, options.seed);
+  Verifier verifier(file, options.pipeline.build_options(0), options.rays, options.seed);
   const bool equal = verifier.run();
   std::printf("\n%s\n", equal ? "verified" : "NOT VERIFIED");
   return equal ? 0 : kDifferenceFound;
@@ -41,6 +42,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   command->add_option("--seed", options->seed, "Seed of the random rays")
       ->check(whole_number(0, UINT64_MAX))
       ->capture_default_str();
+  add_pipeline_options(*command, options->pipeline);
   command->footer("Exits with 1 at the first difference, after saying which ray it is.");
   command->callback([options, &exit_code] { exit_code = run_verify(*options); });
 }

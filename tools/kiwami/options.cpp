@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kiwami/options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdarg>
@@ -66,6 +67,54 @@ void add_trace_options(CLI::App& command, TraceOptions& options) {
   command.add_option("--threads", options.threads, "Threads; 0: one per processor")
       ->check(whole_number(0, 1024))
       ->capture_default_str();
+}
+
+BuildOptions PipelineOptions::build_options(uint32_t bvh_width) const {
+  BuildOptions options;
+  options.bvh_width = bvh_width;
+  options.merge_leaves = merge_leaves;
+  options.builder = method_of_name(KIWAMI_STAGE_BUILDER, builder);
+  options.contraction = method_of_name(KIWAMI_STAGE_CONTRACTION, contraction);
+  if (optimizers.empty()) return options;
+  for (const std::string& word : split_words("--optimize", optimizers)) {
+    options.optimizers.push_back(method_of_name(KIWAMI_STAGE_OPTIMIZER, word));
+  }
+  return options;
+}
+
+void add_pipeline_options(CLI::App& command, PipelineOptions& options) {
+  const auto list = [](uint32_t stage) {
+    std::string text;
+    for (const std::string& name : method_names(stage)) text += (text.empty() ? "" : ", ") + name;
+    return text;
+  };
+  command
+      .add_option("--builder", options.builder,
+                  "How the binary tree is made: " + list(KIWAMI_STAGE_BUILDER))
+      ->capture_default_str();
+  command.add_option(
+      "--optimize", options.optimizers,
+      "What improves it, between commas, in this order: " + list(KIWAMI_STAGE_OPTIMIZER));
+  command
+      .add_option("--contract", options.contraction,
+                  "How it becomes wide: " + list(KIWAMI_STAGE_CONTRACTION))
+      ->capture_default_str();
+  command.add_flag("--merge-leaves,!--no-merge-leaves", options.merge_leaves,
+                   "Bottom nodes and leaf blocks are shared by masks (the default)");
+}
+
+std::vector<std::string> split_words(const std::string& option, const std::string& text) {
+  std::vector<std::string> words;
+  for (size_t start = 0; start <= text.size();) {
+    const size_t end = std::min(text.find(',', start), text.size());
+    words.push_back(text.substr(start, end - start));
+    if (words.back().empty()) {
+      throw UsageError(
+          format("%s is '%s', expected words between commas", option.c_str(), text.c_str()));
+    }
+    start = end + 1;
+  }
+  return words;
 }
 
 Vec3 parse_vector(const std::string& option, const std::string& text) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "measure/library.h"
 #include "scene/vector.h"
@@ -17,6 +18,19 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The methods of a build, by name.
+struct PipelineOptions {
+  std::string builder = "binned_sah";
+  std::string optimizers;  ///< between commas
+  std::string contraction = "optimal";
+  bool merge_leaves = true;
+
+  BuildOptions build_options(uint32_t bvh_width) const;
+};
+
+/// Adds --builder, --optimize, --contract and --merge-leaves.
+void add_pipeline_options(CLI::App& command, PipelineOptions& options);
+
 /// Which kernels trace, and how.
 struct TraceOptions {
   std::string isa = "auto";
@@ -24,7 +38,6 @@ struct TraceOptions {
   uint32_t threads = 0;
 
   Device make_device() const { return Device(isa_of_name(isa), threads); }
-  BuildOptions build_options() const { return {bvh_width, true}; }
 };
 
 /// Adds --isa, --bvh-width and --threads.
@@ -36,6 +49,9 @@ CLI::Validator finite_number(double lowest, double highest);
 
 /// "1,2.5,-3" as a vector of finite numbers; `option` is named by the error.
 Vec3 parse_vector(const std::string& option, const std::string& text);
+
+/// The words between the commas; `option` is named when one is empty.
+std::vector<std::string> split_words(const std::string& option, const std::string& text);
 
 /// "640x480".
 struct Size {

@@ -77,8 +77,10 @@ constexpr const char* kReferenceName = "scalar, 4 wide, merged, 1 thread";
 
 }  // namespace
 
-Verifier::Verifier(const SceneFile& scene, size_t rays_per_set, uint64_t seed)
+Verifier::Verifier(const SceneFile& scene, const BuildOptions& build, size_t rays_per_set,
+                   uint64_t seed)
     : scene_(scene),
+      build_(build),
       device_(KIWAMI_ISA_SCALAR, 1),
       reference_(device_, scene, {4, true}),
       sets_(make_ray_sets(scene, reference_, rays_per_set, seed)),
@@ -110,7 +112,10 @@ bool Verifier::run() {
 
 bool Verifier::run_contender(const Contender& contender) {
   const Device device(contender.isa, contender.threads);
-  const BuiltScene scene(device, scene_, {contender.bvh_width, contender.merge_leaves});
+  BuildOptions build = build_;
+  build.bvh_width = contender.bvh_width;
+  build.merge_leaves = contender.merge_leaves;
+  const BuiltScene scene(device, scene_, build);
   const bool native = (device.info().native_widths & (1u << contender.bvh_width)) != 0;
   std::printf("%-8s %6u %9s %8s %10u %12.1f  ", kiwami_isa_name(contender.isa), contender.bvh_width,
               native ? "native" : "scalar", contender.merge_leaves ? "yes" : "no",

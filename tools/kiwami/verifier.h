@@ -24,7 +24,9 @@ struct Contender {
 class Verifier {
  public:
   /// The scene must have no instances, and outlive the verifier.
-  Verifier(const SceneFile& scene, size_t rays_per_set, uint64_t seed);
+  /// The contenders are built as `build` says, but for width and merging; the reference is built
+  /// by the defaults.
+  Verifier(const SceneFile& scene, const BuildOptions& build, size_t rays_per_set, uint64_t seed);
 
   /// Prints a table and returns true; or prints the first difference and returns false.
   bool run();
@@ -35,6 +37,7 @@ class Verifier {
   bool compare_with_embree() const;
 
   const SceneFile& scene_;
+  BuildOptions build_;
   Device device_;
   BuiltScene reference_;
   std::vector<RaySet> sets_;

@@ -32,7 +32,8 @@ constexpr struct {
                    {"node_cost", KIWAMI_PARAMETER_NODE_COST},
                    {"leaf_cost", KIWAMI_PARAMETER_LEAF_COST},
                    {"validate_build", KIWAMI_PARAMETER_VALIDATE_BUILD},
-                   {"contraction", KIWAMI_PARAMETER_CONTRACTION}};
+                   {"contraction", KIWAMI_PARAMETER_CONTRACTION},
+                   {"builder", KIWAMI_PARAMETER_BUILDER}};
 
 std::string parameter_names() {
   std::string names;
@@ -40,6 +41,20 @@ std::string parameter_names() {
     names += (names.empty() ? "" : ", ") + std::string(parameter.name);
   }
   return names;
+}
+
+/// Numbers of methods are below this.
+constexpr uint32_t kMethodLimit = 256;
+
+const char* stage_name(uint32_t stage) {
+  switch (stage) {
+    case KIWAMI_STAGE_BUILDER:
+      return "builder";
+    case KIWAMI_STAGE_OPTIMIZER:
+      return "optimizer";
+    default:
+      return "contraction";
+  }
 }
 
 /// The whole text as a number, or nothing.
@@ -104,6 +119,11 @@ void BuiltScene::set_parameters(kiwami_device* device, const BuildOptions& optio
   check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_MERGE_LEAVES,
                                    options.merge_leaves ? 1.0 : 0.0),
         device);
+  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_BUILDER, options.builder), device);
+  check(kiwami_scene_set_optimizers(scene_, options.optimizers.data(), options.optimizers.size()),
+        device);
+  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_CONTRACTION, options.contraction),
+        device);
   for (const Parameter& parameter : options.parameters) {
     check(kiwami_scene_set_parameter(scene_, parameter.number, parameter.value), device);
   }
@@ -149,6 +169,38 @@ void BuiltScene::any_hits_singly(std::span<const kiwami_ray> rays,
   for (size_t i = 0; i < rays.size(); ++i) {
     check(kiwami_any_hit(scene_, &rays[i], 0, &occluded[i], 0, 1, &query), nullptr);
   }
+}
+
+std::vector<std::string> method_names(uint32_t stage) {
+  std::vector<std::string> names;
+  for (uint32_t method = 0; method < kMethodLimit; ++method) {
+    const char* name = kiwami_method_name(stage, method);
+    if (name != nullptr) names.emplace_back(name);
+  }
+  return names;
+}
+
+uint32_t method_of_name(uint32_t stage, const std::string& name) {
+  for (uint32_t method = 0; method < kMethodLimit; ++method) {
+    const char* known = kiwami_method_name(stage, method);
+    if (known != nullptr && name == known) return method;
+  }
+  std::string expected;
+  for (const std::string& known : method_names(stage)) {
+    expected += (expected.empty() ? "" : ", ") + known;
+  }
+  throw LibraryError(KIWAMI_ERROR_INVALID_ARGUMENT,
+                     std::string("there is no ") + stage_name(stage) + " '" + name +
+                         "', expected " + (expected.empty() ? "none" : "one of " + expected));
+}
+
+std::string pipeline_name(const BuildOptions& options) {
+  std::string name = kiwami_method_name(KIWAMI_STAGE_BUILDER, options.builder);
+  for (const uint32_t method : options.optimizers) {
+    name += std::string(" + ") + kiwami_method_name(KIWAMI_STAGE_OPTIMIZER, method);
+  }
+  name += std::string(", ") + kiwami_method_name(KIWAMI_STAGE_CONTRACTION, options.contraction);
+  return name + (options.merge_leaves ? ", merged" : ", unmerged");
 }
 
 Parameter parse_parameter(const std::string& text) {

@@ -51,12 +51,24 @@ struct Parameter {
 struct BuildOptions {
   uint32_t bvh_width = 0;  ///< 0: the device's default
   bool merge_leaves = true;
+  uint32_t builder = KIWAMI_BUILDER_BINNED_SAH;
+  std::vector<uint32_t> optimizers = {};  ///< run in this order
+  uint32_t contraction = KIWAMI_CONTRACTION_OPTIMAL;
   std::vector<Parameter> parameters = {};  ///< set after the others, in this order
 };
 
 /// The parameter of "bin_count=16": NAME is that of KIWAMI_PARAMETER_NAME in lower case, or its
 /// number. Throws LibraryError when it is neither, or VALUE is not a number.
 Parameter parse_parameter(const std::string& text);
+
+/// The names of the methods of a KIWAMI_STAGE_*.
+std::vector<std::string> method_names(uint32_t stage);
+
+/// The number of a method of a KIWAMI_STAGE_*; throws LibraryError that lists the names.
+uint32_t method_of_name(uint32_t stage, const std::string& name);
+
+/// "binned_sah + rotation, optimal, merged".
+std::string pipeline_name(const BuildOptions& options);
 
 /// Owns a committed scene whose geometry i is mesh i of the file. It shares the file's buffers, so
 /// the file must outlive it.
