@@ -40,6 +40,7 @@ class OptimalChooser {
       : binary_(binary),
         width_(config.width),
         leaf_width_(config.leaf_width),
+        fill_from_(config.fill_nodes ? config.width / 2 + 2 : config.width),
         node_cost_(config.node_cost),
         leaf_cost_(config.leaf_cost),
         decisions_(memory, binary.nodes.size()) {
@@ -69,7 +70,8 @@ class OptimalChooser {
   bool is_leaf(uint32_t binary_node) const { return decisions_[binary_node].get(1) != 0; }
 
   uint32_t choose(uint32_t binary_node, ChosenSlot* chosen) const {
-    return distribute(binary_node, width_, chosen);
+    const uint32_t count = distribute(binary_node, width_, chosen);
+    return fill_from_ <= count ? fill(chosen, count) : count;
   }
 
  private:
@@ -174,9 +176,41 @@ class OptimalChooser {
     return 1;
   }
 
+  /// Divides leaves, those first whose halves add least area, until the node is full or no leaf can
+  /// be divided; returns the number of children.
+  uint32_t fill(ChosenSlot* chosen, uint32_t count) const {
+    for (; count < width_; ++count) {
+      uint32_t best = count;
+      float least = std::numeric_limits<float>::infinity();
+      for (uint32_t i = 0; i < count; ++i) {
+        const float added = chosen[i].is_leaf ? added_area(chosen[i].binary_node) : least;
+        if (added < least) {
+          least = added;
+          best = i;
+        }
+      }
+      if (best == count) break;
+      const uint32_t first = binary_.nodes[chosen[best].binary_node].first;
+      std::copy_backward(chosen + best + 1, chosen + count, chosen + count + 1);
+      chosen[best] = {first, true};
+      chosen[best + 1] = {first + 1, true};
+    }
+    return count;
+  }
+
+  /// What two leaves in place of one add to the area of leaves; infinite where it cannot be
+  /// divided.
+  float added_area(uint32_t index) const {
+    const BinaryNode& node = binary_.nodes[index];
+    if (node.is_leaf()) return std::numeric_limits<float>::infinity();
+    return binary_.nodes[node.first].bounds.half_area() +
+           binary_.nodes[node.first + 1].bounds.half_area() - node.bounds.half_area();
+  }
+
   const BinaryBvh& binary_;
   uint32_t width_;
   uint32_t leaf_width_;
+  uint32_t fill_from_;  ///< nodes of at least so many children are filled
   double node_cost_;
   double leaf_cost_;
   double least_area_;

@@ -44,7 +44,8 @@ Contraction contract_by(const BinaryBvh& binary, const WideTreeConfig& config, M
   }
   const OptimalContractionConfig optimal = {config.width,
                                             std::min(config.max_leaf_size, config.width),
-                                            config.node_cost, config.leaf_cost};
+                                            config.node_cost, config.leaf_cost,
+                                            config.merge_leaves};
   return contract_optimally(binary, optimal, memory, parallel);
 }
 

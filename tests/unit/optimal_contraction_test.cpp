@@ -213,6 +213,36 @@ TEST_F(OptimalContractionTest, WithoutAreaNodesAreFull) {
   EXPECT_EQ(contraction.nodes.size(), 73u);
 }
 
+TEST_F(OptimalContractionTest, FillingDividesLeavesAndNothingElse) {
+  for (const Mesh& mesh : {terrain(60), soup(8000, seed()), spheres(8000, seed())}) {
+    for (const uint32_t width : {8u, 16u}) {
+      const BinaryBvh bvh = build(mesh, 2);
+      OptimalContractionConfig config = {width, width, 1.0f, 1.0f};
+      const Contraction plain = contract_optimally(bvh, config);
+      config.fill_nodes = true;
+      const Contraction filled = contract_optimally(bvh, config);
+      const double least = check(bvh, plain, config);
+      const double cost = check(bvh, filled, config);
+      EXPECT_EQ(filled.nodes.size(), plain.nodes.size());
+      EXPECT_EQ(filled.node_area, plain.node_area);
+      EXPECT_GT(filled.leaf_sizes.size(), plain.leaf_sizes.size());
+      EXPECT_GE(cost, least);
+      EXPECT_LE(cost, 1.02 * least) << "width " << width;
+      size_t left_open = 0;
+      for (const ContractedNode& node : filled.nodes) {
+        if (node.slot_count == width || node.slot_count < width / 2 + 2) continue;
+        // Whatever is left open has no leaf that could be divided.
+        ++left_open;
+        for (uint32_t i = 0; i < node.slot_count; ++i) {
+          const ContractedSlot& slot = filled.slots[node.first_slot + i];
+          EXPECT_TRUE(!slot.is_leaf() || bvh.nodes[slot.binary_node].is_leaf());
+        }
+      }
+      EXPECT_LT(left_open, filled.nodes.size() / 20);
+    }
+  }
+}
+
 TEST_F(OptimalContractionTest, IsTheSameOnAnyNumberOfThreads) {
   const BinaryBvh bvh = build(spheres(20000, seed()), 2);
   const OptimalContractionConfig config;

@@ -109,9 +109,7 @@ TEST_F(WideTreeTest, MergingFillsTheNodesOfTheOptimalContraction) {
       const double lanes = fill(tree.used_lanes, tree.leaf_block_count, width);
       std::printf("%-13s %6u triangles, width %2u: slots %.2f %%, lanes %.2f %%\n",
                   scene->name().c_str(), scene->count(), width, 100 * slots, 100 * lanes);
-      // Where neighbours are alike, so are their nodes, and equal sizes do not add up to a full
-      // one.
-      EXPECT_GE(slots, scene->name() == "soup" ? 0.96 : 0.89);
+      EXPECT_GE(slots, 0.96);
       EXPECT_GE(lanes, 0.94);
     }
   }
