@@ -2,6 +2,9 @@
 // The kernels alone, over trees that the library did not build, against the plain oracle.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
+
 #include "parity/kernel_check.h"
 #include "parity/kernel_tables.h"
 #include "parity/test_tree.h"
@@ -13,32 +16,44 @@
 namespace kiwami_tests {
 namespace {
 
-class Kernels : public testing::TestWithParam<NamedKernels> {};
+/// Rays that are answered by the plain loop at once.
+constexpr uint64_t kRaysPerBlock = 50000;
 
-TEST_P(Kernels, AgreeWithThePlainOracleOnAdversarialScenes) {
+/// Compares all kernels on about count rays at a scene. The plain loop, which takes most of the
+/// time, answers each ray once for all of them.
+void compare_all(const Scene& scene, uint64_t count, uint64_t stream) {
+  const PlainOracle oracle(scene);
+  const TestTree trees[] = {TestTree(scene, 4), TestTree(scene, 8), TestTree(scene, 16)};
+  for (uint64_t begin = 0; begin < count; begin += kRaysPerBlock) {
+    const uint64_t rays = std::min(count - begin, kRaysPerBlock);
+    const Expected expected =
+        expected_of(oracle, scene, rays, Random(seed(), stream + (begin << 16)));
+    for (const NamedKernels& kernels : all_kernels()) {
+      const TestTree& tree = trees[kernels.width == 4 ? 0 : kernels.width == 8 ? 1 : 2];
+      const std::string found = difference(kernels, tree.view(), expected);
+      EXPECT_TRUE(found.empty()) << kernels.name << ", scene " << scene.name
+                                 << ", KIWAMI_SEED=" << seed() << "\n"
+                                 << found;
+    }
+  }
+}
+
+TEST(AllKernels, AgreeWithThePlainOracleOnAdversarialScenes) {
   const auto scenes = static_cast<uint32_t>(case_budget(200));
   const uint64_t rays = ray_budget(100000) / scenes + 1;
-  for (uint32_t i = 0; i < scenes; ++i) {
-    const Scene scene = adversarial_scene(i, seed());
-    const PlainOracle oracle(scene);
-    const TestTree tree(scene, GetParam().width);
-    const Expected expected = expected_of(oracle, scene, rays, Random(seed(), i));
-    const std::string found = difference(GetParam(), tree.view(), expected);
-    EXPECT_TRUE(found.empty()) << "scene " << scene.name << ", KIWAMI_SEED=" << seed() << "\n"
-                               << found;
+  for (uint32_t i = 0; i < scenes; ++i) compare_all(adversarial_scene(i, seed()), rays, i);
+  std::printf("%u scenes, %llu rays on each of %zu kernel sets, KIWAMI_SEED=%llu\n", scenes,
+              static_cast<unsigned long long>(rays * scenes), all_kernels().size(),
+              static_cast<unsigned long long>(seed()));
+}
+
+TEST(AllKernels, AgreeWithThePlainOracleOnClosedMeshes) {
+  for (const ClosedMesh& closed : closed_meshes()) {
+    compare_all(scene_of(closed), ray_budget(10000) / 70 + 1, 0);
   }
 }
 
-TEST_P(Kernels, AgreeWithThePlainOracleOnClosedMeshes) {
-  for (const ClosedMesh& closed : closed_meshes()) {
-    const Scene scene = scene_of(closed);
-    const PlainOracle oracle(scene);
-    const TestTree tree(scene, GetParam().width);
-    const Expected expected = expected_of(oracle, scene, ray_budget(10000) / 7, Random(seed()));
-    const std::string found = difference(GetParam(), tree.view(), expected);
-    EXPECT_TRUE(found.empty()) << closed.name << ", KIWAMI_SEED=" << seed() << "\n" << found;
-  }
-}
+class Kernels : public testing::TestWithParam<NamedKernels> {};
 
 TEST_P(Kernels, AreCaughtWhenABoxIsTooSmall) {
   const ClosedMesh closed = closed_meshes().front();
