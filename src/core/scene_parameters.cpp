@@ -23,7 +23,7 @@ constexpr ParameterBounds kBounds[kLastParameter + 1] = {
     {0.01, 100.0, 1.0, false},                    // LEAF_COST
     {0, 1, 0, true},                              // VALIDATE_BUILD
     {0, 1, 1, true},                              // CONTRACTION
-    {0, 255, 0, true},                            // BUILDER
+    {0, KIWAMI_BUILDER_BINNED_SAH, 0, true},                            // BUILDER
 };
 
 /// Throws unless a method of this stage has the number.

@@ -42,10 +42,9 @@ Contraction contract_by(const BinaryBvh& binary, const WideTreeConfig& config, M
   if (config.contraction == ContractionMethod::kSurfaceArea) {
     return contract(binary, config.width, memory, parallel);
   }
-  const OptimalContractionConfig optimal = {config.width,
-                                            std::min(config.max_leaf_size, config.width),
-                                            config.node_cost, config.leaf_cost,
-                                            config.merge_leaves};
+  const OptimalContractionConfig optimal = {
+      config.width, std::min(config.max_leaf_size, config.width), config.node_cost,
+      config.leaf_cost, config.merge_leaves};
   return contract_optimally(binary, optimal, memory, parallel);
 }
 

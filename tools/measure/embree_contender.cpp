@@ -45,21 +45,6 @@ RTCIntersectContext make_context(bool coherent) {
   return context;
 }
 
-RTCRay to_embree(const kiwami_ray& ray) {
-  return {ray.origin_x,
-          ray.origin_y,
-          ray.origin_z,
-          ray.tmin,
-          ray.direction_x,
-          ray.direction_y,
-          ray.direction_z,
-          ray.time,
-          ray.tmax,
-          ~0u,
-          0,
-          0};
-}
-
 /// Fills lane `lane` of a packet of rays.
 template <typename Packet>
 void set_lane(Packet& packet, size_t lane, const kiwami_ray& ray) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <embree3/rtcore.h>
+#include <kiwami/kiwami.h>
 
 #include <atomic>
 #include <cstdint>
@@ -35,5 +36,21 @@ class EmbreeScene {
   std::atomic<int64_t> bytes_{0};
   double build_seconds_ = 0.0;
 };
+
+/// With Embree's mask of all ones: it is asked about geometry alone.
+inline RTCRay to_embree(const kiwami_ray& ray) {
+  return {ray.origin_x,
+          ray.origin_y,
+          ray.origin_z,
+          ray.tmin,
+          ray.direction_x,
+          ray.direction_y,
+          ray.direction_z,
+          ray.time,
+          ray.tmax,
+          ~0u,
+          0,
+          0};
+}
 
 }  // namespace kiwami::tools

@@ -24,18 +24,7 @@ class Embree3Tracer final : public EmbreeTracer {
  private:
   kiwami_hit closest_hit(RTCIntersectContext& context, const kiwami_ray& ray) const {
     RTCRayHit query;
-    query.ray = {ray.origin_x,
-                 ray.origin_y,
-                 ray.origin_z,
-                 ray.tmin,
-                 ray.direction_x,
-                 ray.direction_y,
-                 ray.direction_z,
-                 ray.time,
-                 ray.tmax,
-                 ~0u,
-                 0,
-                 0};
+    query.ray = to_embree(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.primID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every method of every stage of a build, by its number: names, errors, and equal answers.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "api/api_support.h"
+
+namespace kiwami_api_tests {
+namespace {
+
+/// The numbers that name a method of a stage.
+std::vector<uint32_t> methods_of(uint32_t stage) {
+  std::vector<uint32_t> methods;
+  for (uint32_t method = 0; method < 256; ++method) {
+    if (kiwami_method_name(stage, method)) methods.push_back(method);
+  }
+  return methods;
+}
+
+class Pipeline : public testing::Test {
+ protected:
+  Pipeline() : device_(make_device()) {}
+
+  /// The answers of a scene that is built by these methods, with the validator after each stage.
+  std::vector<kiwami_hit> answers(const Triangles& triangles, uint32_t builder,
+                                  const std::vector<uint32_t>& optimizers, uint32_t contraction) {
+    const Geometry mesh = make_mesh(device_, triangles.desc());
+    const Scene scene = make_scene(device_);
+    EXPECT_EQ(kiwami_scene_attach(scene.get(), mesh.get(), nullptr), KIWAMI_OK);
+    set(scene, KIWAMI_PARAMETER_VALIDATE_BUILD, 1);
+    set(scene, KIWAMI_PARAMETER_BUILDER, builder);
+    set(scene, KIWAMI_PARAMETER_CONTRACTION, contraction);
+    EXPECT_EQ(kiwami_scene_set_optimizers(scene.get(), optimizers.data(), optimizers.size()),
+              KIWAMI_OK);
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error(device_.get());
+    return closest_hits(scene, random_rays(500, 11));
+  }
+
+  void set(const Scene& scene, uint32_t parameter, double value) {
+    EXPECT_EQ(kiwami_scene_set_parameter(scene.get(), parameter, value), KIWAMI_OK);
+  }
+
+  Device device_;
+};
+
+TEST_F(Pipeline, MethodsHaveNamesOfTheirOwn) {
+  for (const uint32_t stage :
+       {KIWAMI_STAGE_BUILDER, KIWAMI_STAGE_OPTIMIZER, KIWAMI_STAGE_CONTRACTION}) {
+    std::set<std::string> names;
+    for (const uint32_t method : methods_of(stage)) {
+      EXPECT_TRUE(names.insert(kiwami_method_name(stage, method)).second);
+    }
+  }
+  EXPECT_STREQ(kiwami_method_name(KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_BINNED_SAH), "binned_sah");
+  EXPECT_STREQ(kiwami_method_name(KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_OPTIMAL), "optimal");
+  EXPECT_EQ(kiwami_method_name(KIWAMI_STAGE_BUILDER, 255), nullptr);
+  EXPECT_EQ(kiwami_method_name(0, 0), nullptr);
+  EXPECT_EQ(kiwami_method_name(77, 0), nullptr);
+}
+
+TEST_F(Pipeline, EveryMethodGivesTheSameAnswers) {
+  for (const uint32_t count : {0u, 1u, 2u, 3u, 9u, 400u}) {
+    const Triangles triangles = random_triangles(count, count);
+    const std::vector<kiwami_hit> expected =
+        answers(triangles, KIWAMI_BUILDER_BINNED_SAH, {}, KIWAMI_CONTRACTION_OPTIMAL);
+    for (const uint32_t builder : methods_of(KIWAMI_STAGE_BUILDER)) {
+      for (const uint32_t contraction : methods_of(KIWAMI_STAGE_CONTRACTION)) {
+        EXPECT_TRUE(are_equal(answers(triangles, builder, {}, contraction), expected))
+            << kiwami_method_name(KIWAMI_STAGE_BUILDER, builder) << ", " << count;
+        for (const uint32_t optimizer : methods_of(KIWAMI_STAGE_OPTIMIZER)) {
+          EXPECT_TRUE(are_equal(answers(triangles, builder, {optimizer}, contraction), expected))
+              << kiwami_method_name(KIWAMI_STAGE_BUILDER, builder) << " + "
+              << kiwami_method_name(KIWAMI_STAGE_OPTIMIZER, optimizer) << ", " << count;
+        }
+      }
+    }
+    EXPECT_TRUE(are_equal(answers(triangles, KIWAMI_BUILDER_BINNED_SAH,
+                                  methods_of(KIWAMI_STAGE_OPTIMIZER), KIWAMI_CONTRACTION_OPTIMAL),
+                          expected));
+  }
+}
+
+TEST_F(Pipeline, ErrorsNameWhatIsWrong) {
+  const Scene scene = make_scene(device_);
+  const uint32_t methods[KIWAMI_MAX_OPTIMIZERS + 1] = {200};
+  const auto expect = [&](kiwami_result result, const char* sentence) {
+    EXPECT_EQ(result, KIWAMI_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(last_error(device_.get()), sentence);
+  };
+  expect(kiwami_scene_set_optimizers(scene.get(), nullptr, 1),
+         "methods is NULL, expected a valid pointer");
+  expect(kiwami_scene_set_optimizers(scene.get(), methods, 1),
+         "there is no optimizer of number 200, expected one that kiwami_method_name names");
+  expect(kiwami_scene_set_optimizers(scene.get(), methods, KIWAMI_MAX_OPTIMIZERS + 1),
+         "count is 9, expected at most 8 optimizers");
+  EXPECT_EQ(kiwami_scene_set_optimizers(scene.get(), nullptr, 0), KIWAMI_OK);
+  EXPECT_EQ(kiwami_scene_set_optimizers(nullptr, nullptr, 0), KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(last_error(), "scene is NULL, expected a valid pointer");
+}
+
+}  // namespace
+}  // namespace kiwami_api_tests
