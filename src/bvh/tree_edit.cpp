@@ -46,15 +46,17 @@ Array<Extent> measure_extents(const BinaryBvh& bvh, Memory& memory) {
 /// Replaces the inner part of one subtree by halves of its leaves, in the same nodes.
 class SubtreeHalving {
  public:
-  SubtreeHalving(BinaryBvh& bvh, uint32_t root, Memory& memory)
-      : bvh_(bvh), leaves_(memory), pairs_(memory) {
-    collect(root, memory);
+  SubtreeHalving(BinaryBvh& bvh, Memory& memory)
+      : bvh_(bvh), memory_(memory), leaves_(memory), pairs_(memory) {}
+
+  void run(uint32_t root) {
+    collect(root);
     halve(root, 0, static_cast<uint32_t>(leaves_.size()));
   }
 
  private:
-  void collect(uint32_t root, Memory& memory) {
-    GrowingArray<uint32_t> open(memory);
+  void collect(uint32_t root) {
+    GrowingArray<uint32_t> open(memory_);
     open.push_back(root);
     while (!open.empty()) {
       const BinaryNode& node = bvh_.nodes[open.back()];
@@ -85,6 +87,7 @@ class SubtreeHalving {
   }
 
   BinaryBvh& bvh_;
+  Memory& memory_;
   GrowingArray<BinaryNode> leaves_;
   GrowingArray<uint32_t> pairs_;  ///< where siblings stood
 };
@@ -140,7 +143,7 @@ void limit_depth(BinaryBvh& bvh, Memory& memory) {
     if (top.depth - 1 + extent.height <= BinaryBvh::kMaxDepth) continue;
     // Whoever comes here has a level to spare: its parent stood above this limit.
     if (top.depth + halving_levels(extent.leaf_count) >= BinaryBvh::kMaxDepth) {
-      SubtreeHalving(bvh, top.node, memory);
+      SubtreeHalving(bvh, memory).run(top.node);
       continue;
     }
     const uint32_t first = bvh.nodes[top.node].first;

@@ -24,6 +24,8 @@ constexpr float kMargin = 9.0f * 0x1p-24f;
 constexpr float kLeastMagnitude = 0x1p-100f;
 /// Smaller direction components, where the greatest is 1 to 2, are raised to this.
 constexpr float kLeastDirection = 0x1p-63f;
+/// For what raising adds, relative to it.
+constexpr float kRaisedMargin = 16.0f * 0x1p-24f;
 /// Widens scaled distances: where a distance is denormal it has been rounded by up to half the
 /// least float, where a scaled one is, by as much; any other is left as it is.
 constexpr double kLeastDistance = 0x1p-140;
@@ -175,8 +177,10 @@ inline void set_up_axes(const ScalarRay& ray, const TreeView& tree, AxisSlabs& o
                           broadcast<4>(kLeastMagnitude));
   const vfloat<4> greatest_magnitude = greatest_of_three(magnitude);
   const vfloat<4> rounding = broadcast<4>(kMargin) * (magnitude + size * greatest_magnitude);
-  // A raised component moves the point by what was added, times t <= M_kz / |d_kz|.
-  const vfloat<4> moved = (raised - size) * greatest_magnitude;
+  // A raised component moves the point by what was added, times t <= M_kz / |d_kz|. That may be all
+  // of t, so its own roundings count as well: four of t, six of the term on its way to the slab's
+  // distance and two of the sums there, 12 u in all.
+  const vfloat<4> moved = (raised - size) * greatest_magnitude * broadcast<4>(1.0f + kRaisedMargin);
   const vfloat<4> margin = (rounding + moved) * reciprocal_size;
   out.reciprocal = copy_sign(reciprocal_size, direction);
   const vfloat<4> product = origin * out.reciprocal;
