@@ -149,6 +149,21 @@ inline bool continue_alone(const TreeView& tree, const PacketSlabs<N>& packet, i
   return traverse<N>(tree, start, ray, query, probe);
 }
 
+/// A subtree that rays of a packet have still to visit.
+struct PacketEntry {
+  StackEntry start;  ///< its entry is a lower bound for all rays
+  uint32_t rays;     ///< those that enter it
+};
+
+/// Adds an entry to those above bottom, as insert_farthest_first does for a single ray.
+inline PacketEntry* insert_farthest_first(PacketEntry* bottom, PacketEntry* top,
+                                          const PacketEntry& added) {
+  PacketEntry* place = top;
+  for (; place != bottom && place[-1].start.entry < added.start.entry; --place) *place = place[-1];
+  *place = added;
+  return top + 1;
+}
+
 /// The state of one packet on its way through the tree.
 template <int N, typename Query>
 struct PacketTraversal {
@@ -165,24 +180,25 @@ struct PacketTraversal {
 
   void run() {
     greatest_best = greatest_of<N>(packet.best);
-    StackEntry stack[kStackSize<N>];
-    StackEntry* top = stack;
-    *top++ = {tree.root, tree.root_mask, packet.least_tmin, kAll};
+    PacketEntry stack[kStackSize<N>];
+    PacketEntry* top = stack;
+    *top++ = {{Subtree::of(tree.root, tree.root_mask), packet.least_tmin}, kAll};
     while (top != stack) {
-      StackEntry current = *--top;
-      if (current.entry > greatest_best) continue;
-      current.rays = rays_beyond(packet, current.entry, current.rays & alive);
+      PacketEntry current = *--top;
+      const StackEntry& start = current.start;
+      if (start.entry > greatest_best) continue;
+      current.rays = rays_beyond(packet, start.entry, current.rays & alive);
       if (current.rays == 0) continue;
       if (__builtin_popcount(current.rays) < kLeastTogether) {
-        for_each_ray(current.rays, [&](int i) {
-          return continue_alone<N>(tree, packet, i, current, queries[i]);
-        });
-      } else if (current.child & kLeafFlag) {
-        const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
-        const LeafBlock<N>& leaf = leaves[current.child ^ kLeafFlag];
-        NoProbe probe;
         for_each_ray(current.rays,
-                     [&](int i) { return queries[i].visit_leaf(leaf, current.mask, probe); });
+                     [&](int i) { return continue_alone<N>(tree, packet, i, start, queries[i]); });
+      } else if (start.subtree.is_leaf()) {
+        const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
+        const LeafBlock<N>& leaf = leaves[start.subtree.index()];
+        NoProbe probe;
+        for_each_ray(current.rays, [&](int i) {
+          return queries[i].visit_leaf(leaf, start.subtree.mask(), probe);
+        });
       } else {
         top = visit_node(current, top);
       }
@@ -204,21 +220,20 @@ struct PacketTraversal {
     greatest_best = greatest_of<N>(packet.best);
   }
 
-  StackEntry* visit_node(const StackEntry& current, StackEntry* top) {
+  PacketEntry* visit_node(const PacketEntry& current, PacketEntry* top) {
     const auto* const nodes = static_cast<const WideNode<N>*>(tree.nodes);
-    const WideNode<N>& node = nodes[current.child];
+    const WideNode<N>& node = nodes[current.start.subtree.child()];
     vfloat<N> entry;
-    uint32_t hits = test_interval(node, packet, greatest_best, entry) & current.mask;
+    uint32_t hits =
+        test_interval(node, packet, greatest_best, entry) & current.start.subtree.mask();
     float entries[N];
     store(entries, entry);
-    StackEntry* const bottom = top;
+    PacketEntry* const bottom = top;
     for (; hits; hits &= hits - 1) {
       const int slot = __builtin_ctz(hits);
       const uint32_t rays = test_rays(node, slot, packet, current.rays);
       if (rays == 0) continue;
-      StackEntry child = child_of(node, slot, entries[slot]);
-      child.rays = rays;
-      top = insert_farthest_first(bottom, top, child);
+      top = insert_farthest_first(bottom, top, {child_of(node, slot, entries[slot]), rays});
     }
     return top;
   }

@@ -9,6 +9,8 @@ namespace KIWAMI_ISA {
 namespace {
 
 struct NoProbe {
+  static constexpr bool kNeedsEntry = false;
+
   void on_node() {}
   void on_leaf(float) {}
   void on_accept(float) {}
@@ -18,6 +20,8 @@ struct NoProbe {
 /// Counts, and checks what the order of visits rests on: no accepted hit lies before the distance
 /// at which the ray enters the box of its own leaf.
 struct CountingProbe {
+  static constexpr bool kNeedsEntry = true;
+
   TraversalCounters& counters;
   float leaf_entry = 0.0f;
 

@@ -10,12 +10,21 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
 
+/// A child reference and its mask in one word, so that they are moved at once.
+struct Subtree {
+  uint64_t bits;
+
+  static Subtree of(uint32_t child, uint32_t mask) { return {child | uint64_t{mask} << 32}; }
+  uint32_t child() const { return static_cast<uint32_t>(bits); }
+  uint32_t mask() const { return static_cast<uint32_t>(bits >> 32); }
+  bool is_leaf() const { return (child() & kLeafFlag) != 0; }
+  uint32_t index() const { return child() & ~kLeafFlag; }
+};
+
 /// A subtree still to be visited.
 struct StackEntry {
-  uint32_t child;
-  uint32_t mask;
-  float entry;    ///< distance at which the ray enters its box
-  uint32_t rays;  ///< of a packet: those that enter it
+  Subtree subtree;
+  float entry;  ///< distance at which the ray enters its box
 };
 
 /// A path of kMaxWideDepth nodes leaves at most N - 1 entries at each.
@@ -24,36 +33,40 @@ constexpr uint32_t kStackSize = kMaxWideDepth*(N - 1) + 1;
 
 template <int N>
 inline StackEntry child_of(const WideNode<N>& node, int slot, float entry) {
-  return {node.child[slot], node.mask[slot], entry, 0};
+  return {Subtree::of(node.child[slot], node.mask[slot]), entry};
 }
 
+/// Brings a child that will be visited later into the cache, but for the ids of a leaf block. What
+/// it is is not branched on: that would be predicted no better than a coin.
 // Inlined by force: GCC takes a function that only prefetches for one without effects and drops it.
-template <size_t kSize>
-__attribute__((always_inline)) inline void prefetch_lines(const void* first) {
-  const auto* line = static_cast<const char*>(first);
-#pragma GCC unroll 16
-  for (size_t offset = 0; offset < kSize; offset += 64) __builtin_prefetch(line + offset);
-}
-
-/// Brings a child that will be visited later into the cache.
 template <int N>
-__attribute__((always_inline)) inline void prefetch(const TreeView& tree, uint32_t child) {
-  if (child & kLeafFlag) {
-    const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
-    prefetch_lines<sizeof(LeafBlock<N>)>(leaves + (child ^ kLeafFlag));
-  } else {
-    const auto* const nodes = static_cast<const WideNode<N>*>(tree.nodes);
-    prefetch_lines<sizeof(WideNode<N>)>(nodes + child);
+__attribute__((always_inline)) inline void prefetch(const TreeView& tree, Subtree subtree) {
+  static_assert(sizeof(LeafBlock<N>) > sizeof(WideNode<N>));
+  const auto nodes = reinterpret_cast<uintptr_t>(tree.nodes);
+  const auto leaves = reinterpret_cast<uintptr_t>(tree.leaves);
+  const uintptr_t is_leaf = subtree.child() >> 31;
+  const uintptr_t size =
+      sizeof(WideNode<N>) + is_leaf * (sizeof(LeafBlock<N>) - sizeof(WideNode<N>));
+  const uintptr_t start = nodes + ((leaves - nodes) & (uintptr_t{0} - is_leaf));
+  const auto* line = reinterpret_cast<const char*>(start + subtree.index() * size);
+#pragma GCC unroll 16
+  for (size_t offset = 0; offset < sizeof(WideNode<N>); offset += 64) {
+    __builtin_prefetch(line + offset);
   }
 }
 
 /// Adds an entry to those above bottom, which are sorted farthest first: insertion sort, since few
-/// children are hit at once. Returns the new top of the stack.
+/// children are hit at once. Returns the new top of the stack. Members are copied one by one: a
+/// vector that is read where two stores went would wait for both.
 inline StackEntry* insert_farthest_first(StackEntry* bottom, StackEntry* top,
                                          const StackEntry& added) {
   StackEntry* place = top;
-  for (; place != bottom && place[-1].entry < added.entry; --place) *place = place[-1];
-  *place = added;
+  for (; place != bottom && place[-1].entry < added.entry; --place) {
+    place->subtree = place[-1].subtree;
+    place->entry = place[-1].entry;
+  }
+  place->subtree = added.subtree;
+  place->entry = added.entry;
   return top + 1;
 }
 
@@ -70,7 +83,7 @@ inline StackEntry* choose_nearest(const TreeView& tree, const WideNode<N>& node,
   for (; hits; hits &= hits - 1) {
     slot = __builtin_ctz(hits);
     StackEntry other = child_of(node, slot, entry[slot]);
-    prefetch<N>(tree, other.child);
+    prefetch<N>(tree, other.subtree);
     if (other.entry < next.entry) {
       const StackEntry nearer = other;
       other = next;
@@ -81,14 +94,17 @@ inline StackEntry* choose_nearest(const TreeView& tree, const WideNode<N>& node,
   return top;
 }
 
-/// Puts the first of the hit slots into next and the others onto the stack, in their order.
-template <int N>
+/// Puts the first of the hit slots into next and the others onto the stack, in their order. Their
+/// entry distances are copied only for those that look at them.
+template <int N, bool kNeedsEntry>
 inline StackEntry* choose_first(const TreeView& tree, const WideNode<N>& node, uint32_t hits,
                                 const float* entry, StackEntry* top, StackEntry& next) {
   for (; hits & (hits - 1);) {
     const int slot = 31 - __builtin_clz(hits);
-    prefetch<N>(tree, node.child[slot]);
-    *top++ = child_of(node, slot, entry[slot]);
+    top->subtree = Subtree::of(node.child[slot], node.mask[slot]);
+    if constexpr (kNeedsEntry) top->entry = entry[slot];
+    prefetch<N>(tree, top->subtree);
+    ++top;
     hits ^= 1u << slot;
   }
   const int slot = __builtin_ctz(hits);
@@ -100,35 +116,39 @@ inline StackEntry* choose_first(const TreeView& tree, const WideNode<N>& node, u
 template <int N, typename Query, typename Probe>
 inline bool traverse(const TreeView& tree, const StackEntry& start, const SlabRay<N>& ray,
                      Query& query, Probe& probe) {
+  constexpr bool needs_entry = Query::kOrdered || Probe::kNeedsEntry;
   const auto* const nodes = static_cast<const WideNode<N>*>(tree.nodes);
   const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
   StackEntry stack[kStackSize<N>];
   StackEntry* top = stack;
   StackEntry current = start;
   while (true) {
-    if (!(current.child & kLeafFlag)) {
+    if (!current.subtree.is_leaf()) {
       probe.on_node();
-      const WideNode<N>& node = nodes[current.child];
+      const WideNode<N>& node = nodes[current.subtree.child()];
       vfloat<N> entry;
-      const uint32_t hits = test_boxes(node, ray, query.best_bound, entry) & current.mask;
+      const uint32_t hits = test_boxes(node, ray, query.best_bound, entry) & current.subtree.mask();
       if (hits != 0) {
         float entries[N];
         store(entries, entry);
         if constexpr (Query::kOrdered) {
           top = choose_nearest(tree, node, hits, entries, top, current);
         } else {
-          top = choose_first(tree, node, hits, entries, top, current);
+          top = choose_first<N, needs_entry>(tree, node, hits, entries, top, current);
         }
         continue;
       }
     } else {
       probe.on_leaf(current.entry);
-      if (query.visit_leaf(leaves[current.child ^ kLeafFlag], current.mask, probe)) return true;
+      const LeafBlock<N>& leaf = leaves[current.subtree.index()];
+      if (query.visit_leaf(leaf, current.subtree.mask(), probe)) return true;
     }
     do {
       if (top == stack) return false;
-      current = *--top;
-    } while (Query::kOrdered && current.entry > query.best_bound);
+      --top;
+    } while (Query::kOrdered && top->entry > query.best_bound);
+    current.subtree = top->subtree;
+    if constexpr (needs_entry) current.entry = top->entry;
   }
 }
 
