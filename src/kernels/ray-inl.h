@@ -99,11 +99,12 @@ inline void set_up_scalar(const kiwami_ray& ray, ScalarRay& out) {
               z = __builtin_fabsf(ray.direction_z);
   const float greatest_xy = x < y ? y : x;
   const int kz = greatest_xy < z ? 2 : x < y ? 1 : 0;
-  const int next = kz == 2 ? 0 : kz + 1, last = kz == 0 ? 2 : kz - 1;
-  const bool is_negative = second_half(ray)[kz] < 0.0f;
+  // Which of the other two comes first is not branched on: backward rays are as likely as others.
+  constexpr int others[6][2] = {{1, 2}, {2, 1}, {2, 0}, {0, 2}, {0, 1}, {1, 0}};
+  const int is_negative = static_cast<int>(sign_bits(direction) >> kz) & 1;
   out.kz = kz;
-  out.kx = is_negative ? last : next;
-  out.ky = is_negative ? next : last;
+  out.kx = others[2 * kz + is_negative][0];
+  out.ky = others[2 * kz + is_negative][1];
   const float major = out.direction[kz];
   store(out.ratio, direction / broadcast<4>(major));
   out.shear_z = 1.0f / major;
