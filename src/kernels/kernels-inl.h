@@ -36,12 +36,10 @@ inline void write_answer(const RayBatch& batch, size_t i, const kiwami_hit& hit)
   put(offsetof(kiwami_hit, instance_id), hit.instance_id);
 }
 
+/// One ray that is set up, through the whole tree.
 template <typename Query, int N, typename Probe>
-inline typename Query::Answer trace_one(const SceneView& scene, const kiwami_ray& ray,
-                                        Probe& probe) {
-  if (scene.tree.root_mask == 0 || !is_traceable(ray)) return Query::miss();
-  ScalarRay scalar;
-  set_up_scalar(ray, scalar);
+inline typename Query::Answer trace_set_up(const SceneView& scene, const ScalarRay& scalar,
+                                           Probe& probe) {
   SlabRay<N> slabs;
   set_up_slabs<N>(scalar, scene.tree, slabs);
   Query query;
@@ -52,27 +50,32 @@ inline typename Query::Answer trace_one(const SceneView& scene, const kiwami_ray
   return query.answer();
 }
 
+template <typename Query, int N, typename Probe>
+inline typename Query::Answer trace_one(const SceneView& scene, const kiwami_ray& ray,
+                                        Probe& probe) {
+  if (scene.tree.root_mask == 0 || !is_traceable(ray)) return Query::miss();
+  ScalarRay scalar;
+  set_up_scalar(ray, scalar);
+  return trace_set_up<Query, N>(scene, scalar, probe);
+}
+
 /// Rays of one octant that wait until they fill a packet.
 template <int N>
 struct Waiting {
   static constexpr int kSize = PacketSlabs<N>::kSize;
 
   int count = 0;
-  kiwami_ray rays[kSize];
+  ScalarRay rays[kSize];
   size_t index[kSize];  ///< of the ray in its batch
 };
 
 template <typename Query, int N>
 inline void trace_packet(const SceneView& scene, const Waiting<N>& waiting, const RayBatch& batch) {
   constexpr int size = PacketSlabs<N>::kSize;
-  ScalarRay scalars[size];
   Query queries[size];
-  for (int i = 0; i < size; ++i) {
-    set_up_scalar(waiting.rays[i], scalars[i]);
-    queries[i].begin(scene, scalars[i]);
-  }
+  for (int i = 0; i < size; ++i) queries[i].begin(scene, waiting.rays[i]);
   PacketSlabs<N> packet;
-  set_up_packet<N>(scalars, scene.tree, packet);
+  set_up_packet<N>(waiting.rays, scene.tree, packet);
   PacketTraversal<N, Query>{scene.tree, packet, queries}.run();
   for (int i = 0; i < size; ++i) write_answer(batch, waiting.index[i], queries[i].answer());
 }
@@ -85,8 +88,7 @@ inline void flush(const SceneView& scene, Waiting<N>& waiting, const RayBatch& b
   } else {
     NoProbe probe;
     for (int i = 0; i < waiting.count; ++i) {
-      const auto answer = trace_one<Query, N>(scene, waiting.rays[i], probe);
-      write_answer(batch, waiting.index[i], answer);
+      write_answer(batch, waiting.index[i], trace_set_up<Query, N>(scene, waiting.rays[i], probe));
     }
   }
   waiting.count = 0;
@@ -109,7 +111,7 @@ __attribute__((noinline)) void trace_together(const SceneView& scene, const RayB
     if (Query::kOrdered && octant != last) flush<Query, N>(scene, octants[last], batch);
     last = octant;
     Waiting<N>& waiting = octants[octant];
-    waiting.rays[waiting.count] = ray;
+    set_up_scalar(ray, waiting.rays[waiting.count]);
     waiting.index[waiting.count] = i;
     if (++waiting.count == waiting.kSize) flush<Query, N>(scene, waiting, batch);
   }
