@@ -42,6 +42,9 @@ enum {
   KIWAMI_BUILDER_BINNED_SAH = 0 /* top-down by the surface area heuristic over bins */
 };
 enum {
+  KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1 /* subtrees move to where the area shrinks most */
+};
+enum {
   KIWAMI_CONTRACTION_SURFACE_AREA = 0, /* the largest child is opened first */
   KIWAMI_CONTRACTION_OPTIMAL = 1       /* the least cost of the whole tree */
 };

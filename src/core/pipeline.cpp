@@ -5,6 +5,7 @@
 
 #include "builders/binned_sah_builder.h"
 #include "bvh/tree_edit.h"
+#include "optimizers/reinsertion.h"
 
 namespace kiwami {
 namespace {
@@ -16,6 +17,7 @@ struct Method {
 
 constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_BINNED_SAH, "binned_sah"},
+    {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_PARALLEL_REINSERTION, "parallel_reinsertion"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_OPTIMAL, "optimal"},
 };
@@ -47,12 +49,10 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const SceneParameters& p
 }
 
 /// One call of an optimiser.
-void run_optimizer(uint32_t method, BinaryBvh& bvh, const SahCosts& costs, Memory& memory,
-                   const Parallel& parallel) {
+void run_optimizer(uint32_t method, BinaryBvh& bvh, Memory& memory, const Parallel& parallel) {
   switch (method) {
-    default:
-      (void)bvh, (void)costs, (void)memory, (void)parallel;
-      return;
+    case KIWAMI_OPTIMIZER_PARALLEL_REINSERTION:
+      return optimize_by_parallel_reinsertion(bvh, {}, memory, parallel);
   }
 }
 
@@ -83,7 +83,7 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
   const SahCosts costs = costs_of(parameters, width);
   BinaryBvh bvh = run_builder(std::move(primitives), parameters, width, memory, parallel);
   for (const uint32_t method : parameters.optimizers()) {
-    run_optimizer(method, bvh, costs, memory, parallel);
+    run_optimizer(method, bvh, memory, parallel);
   }
   // Builders that know nothing of blocks leave one primitive a leaf.
   if (parameters.whole(KIWAMI_PARAMETER_BUILDER) != KIWAMI_BUILDER_BINNED_SAH) {
