@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "builders/binned_sah_builder.h"
+#include "builders/lbvh_builder.h"
+#include "builders/ploc_builder.h"
 #include "bvh/tree_edit.h"
 #include "optimizers/reinsertion.h"
 
@@ -17,6 +19,8 @@ struct Method {
 
 constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_BINNED_SAH, "binned_sah"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_LBVH, "lbvh"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_PLOC, "ploc"},
     {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_PARALLEL_REINSERTION, "parallel_reinsertion"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_OPTIMAL, "optimal"},
@@ -42,6 +46,10 @@ BinnedSahBuilder::Config binned_sah_config(const SceneParameters& parameters, ui
 BinaryBvh run_builder(Array<BuildPrimitive> primitives, const SceneParameters& parameters,
                       uint32_t width, Memory& memory, const Parallel& parallel) {
   switch (parameters.whole(KIWAMI_PARAMETER_BUILDER)) {
+    case KIWAMI_BUILDER_LBVH:
+      return LbvhBuilder::build(std::move(primitives), {}, memory, parallel);
+    case KIWAMI_BUILDER_PLOC:
+      return PlocBuilder::build(std::move(primitives), {}, memory, parallel);
     default:
       return BinnedSahBuilder::build(std::move(primitives), binned_sah_config(parameters, width),
                                      memory, parallel);

@@ -15,16 +15,16 @@ constexpr uint32_t kLastParameter = KIWAMI_PARAMETER_BUILDER;
 /// By number; number 0 names nothing.
 constexpr ParameterBounds kBounds[kLastParameter + 1] = {
     {0, 0, 0, true},
-    {0, 16, 0, true},                         // BVH_WIDTH
-    {0, 1, 1, true},                          // MERGE_LEAVES
-    {1, 64, 8, true},                         // MERGE_RING
-    {4, 32, 16, true},                        // BIN_COUNT
-    {0, 16, 0, true},                         // MAX_LEAF_SIZE
-    {0.01, 100.0, 1.0, false},                // NODE_COST
-    {0.01, 100.0, 1.0, false},                // LEAF_COST
-    {0, 1, 0, true},                          // VALIDATE_BUILD
-    {0, 1, 1, true},                          // CONTRACTION
-    {0, KIWAMI_BUILDER_BINNED_SAH, 0, true},  // BUILDER
+    {0, 16, 0, true},                   // BVH_WIDTH
+    {0, 1, 1, true},                    // MERGE_LEAVES
+    {1, 64, 8, true},                   // MERGE_RING
+    {4, 32, 16, true},                  // BIN_COUNT
+    {0, 16, 0, true},                   // MAX_LEAF_SIZE
+    {0.01, 100.0, 1.0, false},          // NODE_COST
+    {0.01, 100.0, 1.0, false},          // LEAF_COST
+    {0, 1, 0, true},                    // VALIDATE_BUILD
+    {0, 1, 1, true},                    // CONTRACTION
+    {0, KIWAMI_BUILDER_PLOC, 0, true},  // BUILDER
 };
 
 /// Throws unless a method of this stage has the number.

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bvh/binary_bvh.h"
+#include "core/memory.h"
+#include "parallel/parallel.h"
+
+namespace kiwami {
+
+/// A linear BVH over Morton codes, from the leaves up in one pass: C. Apetrei, "Fast and Simple
+/// Agglomerative LBVH Construction", CGVC 2014. Each leaf climbs; of the two that meet at a node
+/// the second goes on. Which neighbour a range joins is decided by the lesser of two deltas at its
+/// ends, so any delta gives a tree. Departs from it in 63-bit codes, and in a delta that is never
+/// equal for two neighbours: equal codes are told apart by their places, which halves their runs.
+class LbvhBuilder {
+ public:
+  /// What is compared at the border between two neighbours.
+  enum class Delta {
+    kCode,        ///< the highest bit in which their codes differ: halves of cells
+    kSurfaceArea  ///< the area of the box around both
+  };
+  struct Config {
+    Delta delta = Delta::kCode;
+  };
+
+  /// One primitive a leaf. The same tree for any number of threads.
+  static BinaryBvh build(Array<BuildPrimitive> primitives, const Config& config, Memory& memory,
+                         const Parallel& parallel);
+};
+
+}  // namespace kiwami
