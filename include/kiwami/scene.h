@@ -44,7 +44,8 @@ enum {
   KIWAMI_BUILDER_PLOC = 2        /* along a Morton curve, nearest neighbours join */
 };
 enum {
-  KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1 /* subtrees move to where the area shrinks most */
+  KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1, /* subtrees move to where the area shrinks most */
+  KIWAMI_OPTIMIZER_ROTATION = 2              /* near relatives change places */
 };
 enum {
   KIWAMI_CONTRACTION_SURFACE_AREA = 0, /* the largest child is opened first */

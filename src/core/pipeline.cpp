@@ -8,6 +8,7 @@
 #include "builders/ploc_builder.h"
 #include "bvh/tree_edit.h"
 #include "optimizers/reinsertion.h"
+#include "optimizers/rotation.h"
 
 namespace kiwami {
 namespace {
@@ -22,6 +23,7 @@ constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_LBVH, "lbvh"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_PLOC, "ploc"},
     {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_PARALLEL_REINSERTION, "parallel_reinsertion"},
+    {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_ROTATION, "rotation"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_OPTIMAL, "optimal"},
 };
@@ -61,6 +63,8 @@ void run_optimizer(uint32_t method, BinaryBvh& bvh, Memory& memory, const Parall
   switch (method) {
     case KIWAMI_OPTIMIZER_PARALLEL_REINSERTION:
       return optimize_by_parallel_reinsertion(bvh, {}, memory, parallel);
+    case KIWAMI_OPTIMIZER_ROTATION:
+      return optimize_by_rotation(bvh, {}, memory);
   }
 }
 
