@@ -42,13 +42,10 @@ inline StackEntry child_of(const WideNode<N>& node, int slot, float entry) {
 template <int N>
 __attribute__((always_inline)) inline void prefetch(const TreeView& tree, Subtree subtree) {
   static_assert(sizeof(LeafBlock<N>) > sizeof(WideNode<N>));
-  const auto nodes = reinterpret_cast<uintptr_t>(tree.nodes);
-  const auto leaves = reinterpret_cast<uintptr_t>(tree.leaves);
-  const uintptr_t is_leaf = subtree.child() >> 31;
-  const uintptr_t size =
-      sizeof(WideNode<N>) + is_leaf * (sizeof(LeafBlock<N>) - sizeof(WideNode<N>));
-  const uintptr_t start = nodes + ((leaves - nodes) & (uintptr_t{0} - is_leaf));
-  const auto* line = reinterpret_cast<const char*>(start + subtree.index() * size);
+  const bool is_leaf = subtree.is_leaf();
+  const void* const start = is_leaf ? tree.leaves : tree.nodes;
+  const size_t size = is_leaf ? sizeof(LeafBlock<N>) : sizeof(WideNode<N>);
+  const auto* line = static_cast<const char*>(start) + subtree.index() * size;
 #pragma GCC unroll 16
   for (size_t offset = 0; offset < sizeof(WideNode<N>); offset += 64) {
     __builtin_prefetch(line + offset);
