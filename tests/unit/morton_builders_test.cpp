@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -14,12 +13,11 @@
 #include "builders/morton_order.h"
 #include "builders/ploc_builder.h"
 #include "bvh/tree_edit.h"
-#include "bvh/verify_binary.h"
 #include "math/morton.h"
 #include "parallel/radix_sort.h"
 #include "support/environment.h"
 #include "support/random.h"
-#include "unit/tree_scenes.h"
+#include "unit/binary_tree_test.h"
 
 namespace kiwami_tests {
 namespace {
@@ -33,20 +31,10 @@ using kiwami::LbvhBuilder;
 using kiwami::MortonOrder;
 using kiwami::PlocBuilder;
 
-class MortonBuilders : public testing::Test {
+class MortonBuilders : public BinaryTreeTest {
  protected:
-  void SetUp() override {
-    RecordProperty("seed", std::to_string(seed()));
-    std::printf("seed %llu\n", static_cast<unsigned long long>(seed()));
-  }
-
   MortonOrder order_of(const Mesh& mesh) {
     return sort_by_morton_code(primitives_of(mesh, memory_), memory_, one_thread_);
-  }
-
-  void verify(const BinaryBvh& bvh, const Mesh& mesh) {
-    const Array<BuildPrimitive> primitives = primitives_of(mesh, memory_);
-    kiwami::verify_binary_bvh(bvh, primitives.data(), primitives.size(), 1, memory_);
   }
 
   BinaryBvh lbvh(const Mesh& mesh, LbvhBuilder::Delta delta, const kiwami::Parallel& parallel) {
@@ -57,7 +45,6 @@ class MortonBuilders : public testing::Test {
     return PlocBuilder::build(primitives_of(mesh, memory_), {radius}, memory_, parallel);
   }
 
-  kiwami::Memory memory_{nullptr, nullptr, nullptr};
   Threads one_thread_{1};
   kiwami::Parallel many_threads_{0, run_on_plain_threads, nullptr, 8};
 };
@@ -67,12 +54,6 @@ std::string text_of(const BinaryBvh& bvh, uint32_t index = 0) {
   const BinaryNode& node = bvh.nodes[index];
   if (node.is_leaf()) return std::to_string(bvh.primitive_ids[node.first]);
   return "(" + text_of(bvh, node.first) + " " + text_of(bvh, node.first + 1) + ")";
-}
-
-bool is_equal(const BinaryBvh& a, const BinaryBvh& b) {
-  return a.nodes.size() == b.nodes.size() &&
-         std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.bytes()) == 0 &&
-         std::memcmp(a.primitive_ids.data(), b.primitive_ids.data(), a.primitive_ids.bytes()) == 0;
 }
 
 float area_of_both(const Bounds& a, const Bounds& b) {
@@ -150,7 +131,7 @@ TEST_F(MortonBuilders, LbvhCutsEveryRangeAtItsGreatestBorder) {
       const MortonOrder order = order_of(mesh);
       for (const auto delta : {LbvhBuilder::Delta::kCode, LbvhBuilder::Delta::kSurfaceArea}) {
         const BinaryBvh bvh = lbvh(mesh, delta, one_thread_);
-        verify(bvh, mesh);
+        verify(bvh, mesh, 1);
         EXPECT_EQ(text_of(bvh), LinearByDefinition(order, delta).text(0, order.primitives.size()));
       }
     }
@@ -202,7 +183,7 @@ TEST_F(MortonBuilders, PlocJoinsWhatIsNearest) {
     for (const Mesh& mesh : {soup(count, seed() + count), terrain(1 + count / 30)}) {
       for (const uint32_t radius : {1u, 8u, 100u}) {
         const BinaryBvh bvh = ploc(mesh, radius, one_thread_);
-        verify(bvh, mesh);
+        verify(bvh, mesh, 1);
         EXPECT_EQ(text_of(bvh), clustered_by_definition(order_of(mesh), radius)) << count;
       }
     }
@@ -211,18 +192,18 @@ TEST_F(MortonBuilders, PlocJoinsWhatIsNearest) {
 
 TEST_F(MortonBuilders, AreTheSameOnAnyNumberOfThreads) {
   for (const Mesh& mesh : {soup(40000, seed()), spheres(20000, seed())}) {
-    EXPECT_TRUE(is_equal(lbvh(mesh, LbvhBuilder::Delta::kCode, one_thread_),
-                         lbvh(mesh, LbvhBuilder::Delta::kCode, many_threads_)));
-    EXPECT_TRUE(is_equal(ploc(mesh, 16, one_thread_), ploc(mesh, 16, many_threads_)));
+    EXPECT_TRUE(are_equal(lbvh(mesh, LbvhBuilder::Delta::kCode, one_thread_),
+                          lbvh(mesh, LbvhBuilder::Delta::kCode, many_threads_)));
+    EXPECT_TRUE(are_equal(ploc(mesh, 16, one_thread_), ploc(mesh, 16, many_threads_)));
   }
 }
 
 TEST_F(MortonBuilders, DegenerateInputsGiveValidTrees) {
   for (const NamedMesh& named : degenerate_meshes(seed())) {
     SCOPED_TRACE(named.name);
-    verify(lbvh(named.mesh, LbvhBuilder::Delta::kCode, many_threads_), named.mesh);
-    verify(lbvh(named.mesh, LbvhBuilder::Delta::kSurfaceArea, many_threads_), named.mesh);
-    verify(ploc(named.mesh, 16, many_threads_), named.mesh);
+    verify(lbvh(named.mesh, LbvhBuilder::Delta::kCode, many_threads_), named.mesh, 1);
+    verify(lbvh(named.mesh, LbvhBuilder::Delta::kSurfaceArea, many_threads_), named.mesh, 1);
+    verify(ploc(named.mesh, 16, many_threads_), named.mesh, 1);
   }
 }
 

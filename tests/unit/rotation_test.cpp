@@ -3,49 +3,26 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <string>
+#include <utility>
 
 #include "builders/lbvh_builder.h"
-#include "bvh/verify_binary.h"
 #include "support/environment.h"
-#include "unit/tree_scenes.h"
+#include "unit/binary_tree_test.h"
 
 namespace kiwami_tests {
 namespace {
 
-using kiwami::Array;
 using kiwami::BinaryBvh;
 using kiwami::BinaryNode;
 using kiwami::Bounds;
 
-class Rotation : public testing::Test {
+class Rotation : public BinaryTreeTest {
  protected:
-  void SetUp() override {
-    RecordProperty("seed", std::to_string(seed()));
-    std::printf("seed %llu\n", static_cast<unsigned long long>(seed()));
-  }
-
   /// A tree that leaves much to rotate.
   BinaryBvh build(const Mesh& mesh) {
     return kiwami::LbvhBuilder::build(primitives_of(mesh, memory_), {}, memory_, Threads(1));
   }
-
-  void verify(const BinaryBvh& bvh, const Mesh& mesh) {
-    const auto primitives = primitives_of(mesh, memory_);
-    kiwami::verify_binary_bvh(bvh, primitives.data(), primitives.size(), 1, memory_);
-  }
-
-  BinaryBvh copy(const BinaryBvh& bvh) {
-    BinaryBvh made{Array<BinaryNode>(memory_, bvh.nodes.size()),
-                   Array<uint32_t>(memory_, bvh.primitive_ids.size())};
-    std::copy(bvh.nodes.begin(), bvh.nodes.end(), made.nodes.begin());
-    std::copy(bvh.primitive_ids.begin(), bvh.primitive_ids.end(), made.primitive_ids.begin());
-    return made;
-  }
-
-  kiwami::Memory memory_{nullptr, nullptr, nullptr};
 };
 
 /// The area of all inner nodes, their boxes made anew from the leaves.
@@ -70,7 +47,7 @@ TEST_F(Rotation, EndsWhereNoRotationPays) {
     const Mesh mesh = soup(40, seed() + trial);
     BinaryBvh bvh = build(mesh);
     kiwami::optimize_by_rotation(bvh, {1000}, memory_);
-    verify(bvh, mesh);
+    verify(bvh, mesh, 1);
     const double least = inner_area(bvh);
     const auto try_swap = [&](uint32_t a, uint32_t b) {
       BinaryBvh rotated = copy(bvh);
@@ -100,7 +77,7 @@ TEST_F(Rotation, LowersTheCostInEachRound) {
     for (const uint32_t rounds : {1u, 2u, 4u}) {
       BinaryBvh bvh = build(mesh);
       kiwami::optimize_by_rotation(bvh, {rounds}, memory_);
-      verify(bvh, mesh);
+      verify(bvh, mesh, 1);
       EXPECT_LE(inner_area(bvh), last);
       last = inner_area(bvh);
     }
@@ -114,7 +91,7 @@ TEST_F(Rotation, DegenerateTreesStayValid) {
     SCOPED_TRACE(named.name);
     BinaryBvh bvh = build(named.mesh);
     kiwami::optimize_by_rotation(bvh, {}, memory_);
-    verify(bvh, named.mesh);
+    verify(bvh, named.mesh, 1);
   }
 }
 

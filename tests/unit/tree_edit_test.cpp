@@ -3,16 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <cstring>
 #include <limits>
-#include <string>
 #include <vector>
 
-#include "builders/binned_sah_builder.h"
-#include "bvh/verify_binary.h"
 #include "support/environment.h"
-#include "unit/tree_scenes.h"
+#include "unit/binary_tree_test.h"
 
 namespace kiwami_tests {
 namespace {
@@ -20,29 +15,12 @@ namespace {
 using kiwami::Array;
 using kiwami::BinaryBvh;
 using kiwami::BinaryNode;
-using kiwami::BinnedSahBuilder;
 using kiwami::Bounds;
 using kiwami::BuildPrimitive;
 using kiwami::SahCosts;
 
-class TreeEdit : public testing::Test {
+class TreeEdit : public BinaryTreeTest {
  protected:
-  void SetUp() override {
-    RecordProperty("seed", std::to_string(seed()));
-    std::printf("seed %llu\n", static_cast<unsigned long long>(seed()));
-  }
-
-  BinaryBvh build(const Mesh& mesh, uint32_t max_leaf_size) {
-    BinnedSahBuilder::Config config;
-    config.max_leaf_size = config.block_size = max_leaf_size;
-    return BinnedSahBuilder::build(primitives_of(mesh, memory_), config, memory_, Threads(1));
-  }
-
-  void verify(const BinaryBvh& bvh, const Mesh& mesh, uint32_t max_leaf_size) {
-    const Array<BuildPrimitive> primitives = primitives_of(mesh, memory_);
-    kiwami::verify_binary_bvh(bvh, primitives.data(), primitives.size(), max_leaf_size, memory_);
-  }
-
   /// A chain: each inner node has a leaf of one primitive at its left.
   BinaryBvh chain(const Array<BuildPrimitive>& primitives) {
     const auto count = static_cast<uint32_t>(primitives.size());
@@ -77,20 +55,12 @@ class TreeEdit : public testing::Test {
     const double blocks = (count + costs.block_size - 1) / costs.block_size;
     return std::min(divided, costs.leaf_cost * area * blocks);
   }
-
-  kiwami::Memory memory_{nullptr, nullptr, nullptr};
 };
-
-bool is_equal(const BinaryBvh& a, const BinaryBvh& b) {
-  return a.nodes.size() == b.nodes.size() && a.primitive_ids.size() == b.primitive_ids.size() &&
-         std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.bytes()) == 0 &&
-         std::memcmp(a.primitive_ids.data(), b.primitive_ids.data(), a.primitive_ids.bytes()) == 0;
-}
 
 TEST_F(TreeEdit, RelabellingKeepsTheTreeAndForgetsItsNumbering) {
   const Mesh mesh = soup(3000, seed());
-  BinaryBvh bvh = build(mesh, 4);
-  BinaryBvh shuffled = build(mesh, 4);
+  BinaryBvh bvh = build_binned(mesh, 4);
+  BinaryBvh shuffled = build_binned(mesh, 4);
   relabel_depth_first(bvh, memory_);
   verify(bvh, mesh, 4);
   // Moves every pair of siblings to the mirrored place, behind a gap.
@@ -106,11 +76,11 @@ TEST_F(TreeEdit, RelabellingKeepsTheTreeAndForgetsItsNumbering) {
   }
   moved.primitive_ids = std::move(shuffled.primitive_ids);
   relabel_depth_first(moved, memory_);
-  EXPECT_TRUE(is_equal(bvh, moved));
+  EXPECT_TRUE(are_equal(bvh, moved));
 }
 
 TEST_F(TreeEdit, PrimitivesBelowANodeStandSideBySide) {
-  BinaryBvh bvh = build(soup(2000, seed()), 2);
+  BinaryBvh bvh = build_binned(soup(2000, seed()), 2);
   relabel_depth_first(bvh, memory_);
   uint32_t next = 0;
   kiwami::for_each_leaf(bvh, 0, [&](const BinaryNode& leaf) {
@@ -135,14 +105,14 @@ TEST_F(TreeEdit, ATreeOfTheGreatestDepthStaysAsItIs) {
       primitives_of(soup(BinaryBvh::kMaxDepth, seed()), memory_);
   BinaryBvh bvh = chain(primitives), before = chain(primitives);
   limit_depth(bvh, memory_);
-  EXPECT_TRUE(is_equal(bvh, before));
+  EXPECT_TRUE(are_equal(bvh, before));
 }
 
 TEST_F(TreeEdit, LeavesAreCollapsedAtTheLeastCost) {
   for (const SahCosts costs :
        {SahCosts{1, 1, 8}, SahCosts{0.3f, 1, 4}, SahCosts{0.05f, 1, 1}, SahCosts{0.2f, 3, 2}}) {
     for (const Mesh& mesh : {soup(1500, seed()), terrain(30), spheres(4, seed())}) {
-      BinaryBvh bvh = build(mesh, 1);
+      BinaryBvh bvh = build_binned(mesh, 1);
       relabel_depth_first(bvh, memory_);
       uint32_t count = 0;
       const double expected = least_cost(bvh, 0, 8, costs, count) / bvh.nodes[0].bounds.half_area();
@@ -156,7 +126,7 @@ TEST_F(TreeEdit, LeavesAreCollapsedAtTheLeastCost) {
 TEST_F(TreeEdit, DegenerateTreesPassThroughAllEdits) {
   for (const NamedMesh& named : degenerate_meshes(seed())) {
     SCOPED_TRACE(named.name);
-    BinaryBvh bvh = build(named.mesh, 1);
+    BinaryBvh bvh = build_binned(named.mesh, 1);
     relabel_depth_first(bvh, memory_);
     limit_depth(bvh, memory_);
     verify(bvh, named.mesh, 1);
