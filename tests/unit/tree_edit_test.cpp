@@ -52,7 +52,7 @@ class TreeEdit : public BinaryTreeTest {
       count = left + right;
       if (count > max_leaf_size) return divided;
     }
-    const double blocks = (count + costs.block_size - 1) / costs.block_size;
+    const uint32_t blocks = (count + costs.block_size - 1) / costs.block_size;
     return std::min(divided, costs.leaf_cost * area * blocks);
   }
 };
