@@ -10,9 +10,12 @@ namespace {
 
 /// The slots whose boxes the ray meets between its tmin and best, and the distances at which it
 /// enters them. No operand is NaN: offsets are finite and boxes are bounded.
+// Inlined by force: it stands in several loops of one kernel, so GCC would call it, which costs
+// more than the test.
 template <int N>
-inline uint32_t test_boxes(const WideNode<N>& node, const SlabRay<N>& ray, float best,
-                           vfloat<N>& entry) {
+__attribute__((always_inline)) inline uint32_t test_boxes(const WideNode<N>& node,
+                                                          const SlabRay<N>& ray, float best,
+                                                          vfloat<N>& entry) {
   const auto planes = [&](size_t offset) {
     const auto* bytes = reinterpret_cast<const unsigned char*>(node.bounds);
     return load<N>(reinterpret_cast<const float*>(bytes + offset));
