@@ -49,7 +49,7 @@ TEST(Bench, ExplainsItsOptions) {
   EXPECT_EQ(help.exit_code, 0);
   for (const char* option :
        {"SCENE", "--vs", "--robust", "--rays", "--threads", "--api", "--isa", "--bvh-width",
-        "--rounds", "--ray-count", "--param", "--json", "--list", "--scenes-folder", "--eye"}) {
+        "--rounds", "--ray-count", "--param", "--json", "--list", "--scenes", "--eye"}) {
     EXPECT_NE(help.output.find(option), std::string::npos) << option;
   }
 }
@@ -191,7 +191,9 @@ TEST(Bench, WrongArgumentsAreRefusedInOneSentence) {
       {{"sphere:1", "--param", "bin_count=100000"}, "100000"},
       {{"sphere:1", "--param", "=3"}, "parameter"},
       {{"sphere:1", "--param", "900=3"}, "900"},
-      {{"sphere:1", "--list", "best"}, "--list"},
+      {{"sphere:1", "--list", "best"}, "best"},
+      {{"--list", folder / ""}, "expected tuning, judging or a text file"},
+      {{"--list", folder.write("empty.txt", "# nothing\n")}, "names no scene"},
       {{"--list", "judging", "--scenes-folder", folder / "none"}, "there is no file"},
       {{"sphere:1", "sphere:2", "--eye", "1,2,3"}, "--eye"},
       {{"sphere:1", "--eye", "1,2"}, "--eye"},
@@ -218,6 +220,52 @@ TEST(Bench, KnowsTheScenesOfItsLists) {
   for (const auto& [name, camera] : known.at("cameras").items()) {
     for (const char* key : {"eye", "target", "up"}) EXPECT_EQ(camera.at(key).size(), 3u) << name;
     expect_positive(camera, {"fov"});
+  }
+}
+
+TEST(Bench, ReadsAListOfScenesFromAFile) {
+  const TemporaryFolder folder;
+  const std::string list = folder.write("list.txt", "# quick ones\nsphere:1\n\n  a.obj  # own\n");
+  const TemporaryFolder scenes;
+  scenes.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Json rows = bench_rows({"--list", list, "--scenes", scenes / "", "--rays", "random",
+                                "--threads", "1", "--vs", "none", "--api", "batch"});
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows.at(0).at("triangles"), 80);
+  EXPECT_EQ(rows.at(2).at("triangles"), 1);
+  EXPECT_EQ(rows.at(2).at("scene"), scenes / "a.obj");
+}
+
+TEST(Bench, ARowBeginsWithTheSameMembersInTheSameOrder) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(bench({"sphere:2", "--threads", "1", "--json", folder / "rows.json"}).exit_code, 0);
+  const auto rows = nlohmann::ordered_json::parse(read_bytes(folder / "rows.json"));
+  std::vector<std::string> builds = {"scene",
+                                     "triangles",
+                                     "threads",
+                                     "isa",
+                                     "width",
+                                     "build_ms",
+                                     "peer",
+                                     "peer_build_ms",
+                                     "bytes_per_triangle",
+                                     "peak_bytes_per_triangle",
+                                     "sah"};
+  std::vector<std::string> traces = {"scene",   "triangles",  "rays",  "api",
+                                     "threads", "isa",        "width", "mrays",
+                                     "peer",    "peer_mrays", "ratio", "hits_hash"};
+  if (!has_embree()) {
+    std::erase_if(builds, [](const std::string& key) { return key.starts_with("peer"); });
+    std::erase_if(traces,
+                  [](const std::string& key) { return key.starts_with("peer") || key == "ratio"; });
+  }
+  for (const auto& row : rows) {
+    const std::vector<std::string>& expected = row.contains("build_ms") ? builds : traces;
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : row.items()) keys.push_back(key);
+    ASSERT_GE(keys.size(), expected.size());
+    keys.resize(expected.size());
+    EXPECT_EQ(keys, expected);
   }
 }
 

@@ -28,12 +28,14 @@ nlohmann::ordered_json to_json(const BuildRow& row, const std::string& peer) {
   if (row.peer) {
     json["peer"] = peer;
     json["peer_build_ms"] = row.peer->milliseconds;
-    json["build_ratio"] = row.peer->ratio;
-    json["peer_bytes_per_triangle"] = row.peer->bytes_per_triangle;
   }
   json["bytes_per_triangle"] = row.bytes_per_triangle;
   json["peak_bytes_per_triangle"] = row.peak_bytes_per_triangle;
   json["sah"] = row.sah;
+  if (row.peer) {
+    json["build_ratio"] = row.peer->ratio;
+    json["peer_bytes_per_triangle"] = row.peer->bytes_per_triangle;
+  }
   return json;
 }
 
@@ -42,18 +44,20 @@ nlohmann::ordered_json to_json(const TraceRow& row, const std::string& peer) {
   json["scene"] = row.of.scene;
   json["triangles"] = row.of.triangles;
   json["rays"] = row.rays;
-  json["any_hit"] = row.any_hit;
   json["api"] = bench_api_name(row.api);
   put_case(json, row.of);
   json["mrays"] = row.mrays;
   if (row.peer) {
     json["peer"] = peer;
     json["peer_mrays"] = row.peer->mrays;
-    json["peer_entrance"] = row.peer->entrance;
     json["ratio"] = row.peer->ratio;
-    json["peer_disagreements"] = row.peer->disagreements;
   }
   json["hits_hash"] = format("%016llx", static_cast<unsigned long long>(row.hits_hash));
+  json["any_hit"] = row.any_hit;
+  if (row.peer) {
+    json["peer_entrance"] = row.peer->entrance;
+    json["peer_disagreements"] = row.peer->disagreements;
+  }
   return json;
 }
 

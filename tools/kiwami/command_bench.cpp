@@ -180,9 +180,12 @@ void add_scene_options(CLI::App& command, BenchOptions& options) {
   command.add_option("SCENE", options.scenes,
                      "One or more .obj, .tri or .ins files, each also with .gz, or some of " +
                          procedural_scene_names());
-  command.add_option("--list", options.list, "All scenes of a list: " + joined(scene_list_names()))
-      ->check(one_of(scene_list_names()));
-  command.add_option("--scenes-folder", options.scenes_folder, "Where the files of the list are")
+  command.add_option("--list", options.list,
+                     "All scenes of a list: " + joined(scene_list_names()) +
+                         ", or a text file with a scene a line");
+  command
+      .add_option("--scenes-folder,--scenes", options.scenes_folder,
+                  "Where the files of the list are")
       ->capture_default_str();
   add_view_options(command, options.view);
 }

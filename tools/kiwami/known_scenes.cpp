@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kiwami/known_scenes.h"
 
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "kiwami/known_scenes_text.h"
 
@@ -16,6 +18,22 @@ const nlohmann::ordered_json& known_scenes() {
 
 Vec3 to_vector(const nlohmann::ordered_json& numbers) {
   return {numbers.at(0).get<float>(), numbers.at(1).get<float>(), numbers.at(2).get<float>()};
+}
+
+/// The words that begin the lines of a text file.
+std::vector<std::string> read_list(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path)) {
+    throw SceneError("there is no list of scenes '" + path.string() +
+                     "', expected tuning, judging or a text file");
+  }
+  std::vector<std::string> names;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    if (std::string name; words >> name) names.push_back(name);
+  }
+  if (names.empty()) throw SceneError("the list '" + path.string() + "' names no scene");
+  return names;
 }
 
 }  // namespace
@@ -40,10 +58,10 @@ std::vector<std::string> scene_list_names() {
 std::vector<std::string> scenes_of_list(const std::string& list,
                                         const std::filesystem::path& folder) {
   const nlohmann::ordered_json& lists = known_scenes().at("lists");
-  if (!lists.contains(list)) throw SceneError("there is no list of scenes '" + list + "'");
+  const std::vector<std::string> names =
+      lists.contains(list) ? lists.at(list).get<std::vector<std::string>>() : read_list(list);
   std::vector<std::string> scenes;
-  for (const auto& entry : lists.at(list)) {
-    const std::string name = entry.get<std::string>();
+  for (const std::string& name : names) {
     const bool is_file = name.find('.') != std::string::npos;
     scenes.push_back(is_file ? (folder / name).string() : name);
   }

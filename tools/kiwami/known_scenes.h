@@ -13,11 +13,13 @@ namespace kiwami::tools {
 /// well (benchmarks/scenes.json).
 SceneFile load_known_scene(const std::filesystem::path& path);
 
-/// The names of the lists of benchmark scenes: "tuning" and "judging".
+/// The names of the lists of benchmark scenes: automatic choices are tuned on "tuning" alone, and
+/// figures are reported for "judging" alone.
 std::vector<std::string> scene_list_names();
 
-/// The scenes of a list, those that are files being in `folder`. Throws SceneError for a list that
-/// there is not.
+/// The scenes of a list, those that are files being in `folder`. `list` is one of
+/// scene_list_names, or a text file with a scene a line (# begins a comment). Throws SceneError
+/// when it is neither, or an empty file.
 std::vector<std::string> scenes_of_list(const std::string& list,
                                         const std::filesystem::path& folder);
 
