@@ -6,6 +6,7 @@
 #define KIWAMI_H
 
 #include "base.h"
+#include "bvh.h"
 #include "device.h"
 #include "geometry.h"
 #include "scene.h"

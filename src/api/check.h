@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <new>
 
+#include "core/bvh.h"
 #include "core/device.h"
 #include "core/error.h"
 #include "core/geometry.h"
@@ -56,9 +58,47 @@ inline const Scene* object_of(const kiwami_scene* handle) {
   return reinterpret_cast<const Scene*>(handle);
 }
 
-/// The device of a scene handle, for reports; null for NULL.
+inline Bvh* object_of(kiwami_bvh* handle) { return reinterpret_cast<Bvh*>(handle); }
+inline const Bvh* object_of(const kiwami_bvh* handle) {
+  return reinterpret_cast<const Bvh*>(handle);
+}
+
+/// The device of a scene (tree) handle, for reports; null for NULL.
 inline const Device* device_of(const kiwami_scene* scene) {
   return scene ? &object_of(scene)->device() : nullptr;
+}
+inline const Device* device_of(const kiwami_bvh* bvh) {
+  return bvh ? &object_of(bvh)->device() : nullptr;
+}
+
+/// What a scene committed; throws Error for a scene that is NULL or was never committed.
+inline const CommittedScene& committed_of(const kiwami_scene* scene) {
+  check_not_null(scene, "scene");
+  const CommittedScene* committed = object_of(scene)->committed();
+  if (!committed) {
+    throw Error(KIWAMI_ERROR_INVALID_STATE,
+                "scene was never committed, expected a successful kiwami_scene_commit before");
+  }
+  return *committed;
+}
+
+/// Throws unless count elements of size bytes, stride bytes apart, end within the address space.
+inline void check_array(const char* name, const void* data, size_t stride, size_t size,
+                        size_t count) {
+  check_not_null(data, name);
+  if (stride != 0 && stride < size) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "the stride of %s is %zu, expected at least %zu, or 0 for %zu", name, stride, size,
+                size);
+  }
+  const size_t step = stride ? stride : size;
+  const size_t limit = std::numeric_limits<uintptr_t>::max() - reinterpret_cast<uintptr_t>(data);
+  if (size > limit || count - 1 > (limit - size) / step) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "the %zu elements of %s, %zu bytes apart, reach beyond the address space, expected "
+                "an extent of at most %zu bytes",
+                count, name, step, limit);
+  }
 }
 
 /// No struct of any version of the library is larger; a larger size is an uninitialised one.

@@ -12,14 +12,6 @@ namespace {
 
 constexpr size_t kMinimumInfoSize = 8;
 
-const CommittedScene& committed(const Scene& scene) {
-  if (!scene.committed()) {
-    throw Error(KIWAMI_ERROR_INVALID_STATE,
-                "scene was never committed, expected a successful kiwami_scene_commit before");
-  }
-  return *scene.committed();
-}
-
 }  // namespace
 
 extern "C" {
@@ -104,15 +96,14 @@ kiwami_result kiwami_scene_get_info(const kiwami_scene* scene, kiwami_scene_info
   return guarded(device_of(scene), [&] {
     check_not_null(scene, "scene");
     check_not_null(info, "info");
-    write_info(info, kMinimumInfoSize, "info", committed(*object_of(scene)).info());
+    write_info(info, kMinimumInfoSize, "info", committed_of(scene).info());
   });
 }
 
 kiwami_result kiwami_scene_validate(const kiwami_scene* scene) {
   return guarded(device_of(scene), [&] {
-    check_not_null(scene, "scene");
     const DefaultFloatEnvironment environment;
-    committed(*object_of(scene)).validate();
+    committed_of(scene).validate();
   });
 }
 

@@ -17,17 +17,6 @@ constexpr kiwami_ray_fields kNoRays{};
 constexpr kiwami_hit_fields kNoHits{};
 constexpr kiwami_query kDefaultQuery{};
 
-/// The structure to trace, of a scene that may be NULL or never committed.
-const CommittedScene& committed_of(const kiwami_scene* scene) {
-  check_not_null(scene, "scene");
-  const CommittedScene* committed = object_of(scene)->committed();
-  if (!committed) {
-    throw Error(KIWAMI_ERROR_INVALID_STATE,
-                "scene was never committed, expected a successful kiwami_scene_commit before");
-  }
-  return *committed;
-}
-
 bool is_on_calling_thread(const kiwami_query* query) {
   if (!query) return false;
   const kiwami_query checked = read_descriptor(query, kMinimumStructSize, "query", kDefaultQuery);
@@ -41,24 +30,6 @@ bool is_on_calling_thread(const kiwami_query* query) {
 void check_reserved(const char* name, uint32_t reserved) {
   if (reserved != 0) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "%s is %u, expected 0", name, reserved);
-  }
-}
-
-/// Throws unless count elements of size bytes, stride bytes apart, end within the address space.
-void check_array(const char* name, const void* data, size_t stride, size_t size, size_t count) {
-  check_not_null(data, name);
-  if (stride != 0 && stride < size) {
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
-                "the stride of %s is %zu, expected at least %zu, or 0 for %zu", name, stride, size,
-                size);
-  }
-  const size_t step = stride ? stride : size;
-  const size_t limit = std::numeric_limits<uintptr_t>::max() - reinterpret_cast<uintptr_t>(data);
-  if (size > limit || count - 1 > (limit - size) / step) {
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
-                "the %zu elements of %s, %zu bytes apart, reach beyond the address space, expected "
-                "an extent of at most %zu bytes",
-                count, name, step, limit);
   }
 }
 

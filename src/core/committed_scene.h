@@ -32,6 +32,10 @@ class CommittedScene {
   const Parallel& parallel() const { return *parallel_; }
   bool validates_arguments() const { return validates_arguments_; }
   const kiwami_scene_info& info() const { return info_; }
+  const WideTree& tree() const { return tree_; }
+  TriangleSource source() const {
+    return {mesh_views_.data(), static_cast<uint32_t>(mesh_views_.size())};
+  }
 
   /// Checks every invariant; throws Error(VALIDATION) or Error(OUT_OF_MEMORY).
   void validate() const;
@@ -56,9 +60,6 @@ class CommittedScene {
   BinaryBvh build_binary(const SceneParameters& parameters);
   void build(const SceneParameters& parameters);
   void describe();
-  TriangleSource source() const {
-    return {mesh_views_.data(), static_cast<uint32_t>(mesh_views_.size())};
-  }
 
   // Its own byte count, which gives the exact peak of one build, whatever else the device does.
   mutable Memory memory_;

@@ -56,6 +56,34 @@ Scene make_scene(const Device& device, const Geometry& geometry) {
   return scene;
 }
 
+Bvh bvh_of(const Scene& scene) {
+  kiwami_bvh* bvh = nullptr;
+  EXPECT_EQ(kiwami_scene_get_bvh(scene.get(), &bvh), KIWAMI_OK) << last_error();
+  return Bvh(bvh);
+}
+
+kiwami_bvh_info info_of(const Bvh& bvh) {
+  kiwami_bvh_info info{};
+  info.struct_size = sizeof info;
+  EXPECT_EQ(kiwami_bvh_get_info(bvh.get(), &info), KIWAMI_OK) << last_error();
+  return info;
+}
+
+std::vector<kiwami_bvh_node> nodes_of(const Bvh& bvh) {
+  std::vector<kiwami_bvh_node> nodes(info_of(bvh).node_count);
+  EXPECT_EQ(kiwami_bvh_get_nodes(bvh.get(), 0, nodes.size(), nodes.data(), 0), KIWAMI_OK)
+      << last_error();
+  return nodes;
+}
+
+std::vector<kiwami_bvh_primitive> primitives_of(const Bvh& bvh) {
+  std::vector<kiwami_bvh_primitive> primitives(info_of(bvh).primitive_count);
+  EXPECT_EQ(kiwami_bvh_get_primitives(bvh.get(), 0, primitives.size(), primitives.data(), 0),
+            KIWAMI_OK)
+      << last_error();
+  return primitives;
+}
+
 std::string last_error(const kiwami_device* device) {
   std::string text(kiwami_last_error(device, nullptr, 0), '\0');
   kiwami_last_error(device, text.data(), text.size());

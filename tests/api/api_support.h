@@ -18,10 +18,12 @@ struct Release {
   void operator()(kiwami_device* device) const { kiwami_device_release(device); }
   void operator()(kiwami_geometry* geometry) const { kiwami_geometry_release(geometry); }
   void operator()(kiwami_scene* scene) const { kiwami_scene_release(scene); }
+  void operator()(kiwami_bvh* bvh) const { kiwami_bvh_release(bvh); }
 };
 using Device = std::unique_ptr<kiwami_device, Release>;
 using Geometry = std::unique_ptr<kiwami_geometry, Release>;
 using Scene = std::unique_ptr<kiwami_scene, Release>;
+using Bvh = std::unique_ptr<kiwami_bvh, Release>;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -35,6 +37,11 @@ Geometry make_mesh(const Device& device, const kiwami_triangle_mesh_desc& desc);
 Scene make_scene(const Device& device);
 /// A committed scene of one geometry.
 Scene make_scene(const Device& device, const Geometry& geometry);
+/// The tree of a committed scene, and what is in it.
+Bvh bvh_of(const Scene& scene);
+kiwami_bvh_info info_of(const Bvh& bvh);
+std::vector<kiwami_bvh_node> nodes_of(const Bvh& bvh);
+std::vector<kiwami_bvh_primitive> primitives_of(const Bvh& bvh);
 
 /// The whole sentence of the last error.
 std::string last_error(const kiwami_device* device = nullptr);

@@ -55,6 +55,24 @@ static kiwami_scene* make_scene(kiwami_device* device, kiwami_geometry* mesh) {
   return scene;
 }
 
+static void look_at_the_tree(const kiwami_scene* scene) {
+  kiwami_bvh* bvh = NULL;
+  kiwami_bvh_info info;
+  kiwami_bvh_node root;
+  kiwami_bvh_primitive primitives[2];
+  EXPECT(kiwami_scene_get_bvh(scene, &bvh) == KIWAMI_OK);
+  kiwami_bvh_retain(bvh);
+  kiwami_bvh_release(bvh);
+  info.struct_size = sizeof info;
+  EXPECT(kiwami_bvh_get_info(bvh, &info) == KIWAMI_OK);
+  EXPECT(info.primitive_count == 2 && info.leaf_count >= 1);
+  EXPECT(kiwami_bvh_get_nodes(bvh, 0, 1, &root, 0) == KIWAMI_OK);
+  EXPECT(root.lower[0] == -1 && root.upper[2] == 5 && root.primitive_count == 2);
+  EXPECT(kiwami_bvh_get_primitives(bvh, 0, 2, primitives, 0) == KIWAMI_OK);
+  EXPECT(primitives[0].primitive_id + primitives[1].primitive_id == 1);
+  kiwami_bvh_release(bvh);
+}
+
 /* A ray along +z through (x, y) meets the square at t = 5, or passes by. */
 static kiwami_ray ray_at(float x, float y) {
   kiwami_ray ray;
@@ -137,6 +155,7 @@ int main(void) {
   scene = make_scene(device, mesh);
   kiwami_geometry_release(mesh);
   kiwami_device_release(device); /* the scene holds both */
+  look_at_the_tree(scene);
   trace_arrays(scene);
   trace_fields(scene);
   kiwami_scene_release(scene);

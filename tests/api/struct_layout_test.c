@@ -146,6 +146,35 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_query, flags, 4);
 }
 
+static void check_bvh(void) {
+  SIZE(kiwami_bvh_node, 56);
+  FIELD(kiwami_bvh_node, lower, 0);
+  FIELD(kiwami_bvh_node, upper, 12);
+  FIELD(kiwami_bvh_node, parent, 24);
+  FIELD(kiwami_bvh_node, depth, 28);
+  FIELD(kiwami_bvh_node, first_child, 32);
+  FIELD(kiwami_bvh_node, child_count, 36);
+  FIELD(kiwami_bvh_node, first_primitive, 40);
+  FIELD(kiwami_bvh_node, primitive_count, 44);
+  FIELD(kiwami_bvh_node, storage_index, 48);
+  FIELD(kiwami_bvh_node, storage_mask, 52);
+
+  SIZE(kiwami_bvh_primitive, 8);
+  FIELD(kiwami_bvh_primitive, geometry_id, 0);
+  FIELD(kiwami_bvh_primitive, primitive_id, 4);
+
+  SIZE(kiwami_bvh_info, 40);
+  FIELD(kiwami_bvh_info, struct_size, 0);
+  FIELD(kiwami_bvh_info, width, 4);
+  FIELD(kiwami_bvh_info, leaf_width, 8);
+  FIELD(kiwami_bvh_info, depth, 12);
+  FIELD(kiwami_bvh_info, node_count, 16);
+  FIELD(kiwami_bvh_info, leaf_count, 20);
+  FIELD(kiwami_bvh_info, primitive_count, 24);
+  FIELD(kiwami_bvh_info, reserved, 28);
+  FIELD(kiwami_bvh_info, bytes, 32);
+}
+
 static void check_numbers(void) {
   expect("KIWAMI_ERROR_INVALID_ARGUMENT", (size_t)-KIWAMI_ERROR_INVALID_ARGUMENT, 1);
   expect("KIWAMI_ERROR_INVALID_STATE", (size_t)-KIWAMI_ERROR_INVALID_STATE, 2);
@@ -174,6 +203,7 @@ int main(void) {
     check_fields();
   }
   check_infos_and_query();
+  check_bvh();
   check_numbers();
   return failures != 0;
 }

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// A tree as arrays to look at: one node for each path, whatever the stored nodes share.
+#pragma once
+
+#include "core/memory.h"
+#include "kiwami/bvh.h"
+#include "wide/wide_tree.h"
+
+namespace kiwami {
+
+struct FlatTree {
+  Array<kiwami_bvh_node> nodes;   ///< breadth first
+  Array<uint32_t> primitive_ids;  ///< depth first, so that those of each subtree are a run
+};
+
+/// The paths of a wide tree. Throws Error(TOO_LARGE) where node numbers would not fit.
+FlatTree flatten(const WideTree& tree, Memory& memory);
+
+}  // namespace kiwami
