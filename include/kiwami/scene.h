@@ -14,7 +14,8 @@ extern "C" {
 /* A reference-counted handle. It holds its device and its attached geometries. */
 typedef struct kiwami_scene kiwami_scene;
 
-/* What can be tuned, by kiwami_scene_set_parameter. The numbers are pinned; new ones are added. */
+/* What can be tuned, by kiwami_scene_set_parameter. The numbers are pinned; new ones are added,
+ * with gaps between them. */
 enum {
   KIWAMI_PARAMETER_BVH_WIDTH = 1,      /* 4, 8 or 16 children a node; 0: the device's default */
   KIWAMI_PARAMETER_MERGE_LEAVES = 2,   /* 1: bottom nodes and leaf blocks are shared by masks; 0 */

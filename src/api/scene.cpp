@@ -64,7 +64,7 @@ kiwami_result kiwami_scene_set_parameter(kiwami_scene* scene, uint32_t parameter
 kiwami_result kiwami_parameter_bounds(uint32_t parameter, double* lowest, double* highest,
                                       double* preset) {
   return guarded(nullptr, [&] {
-    const ParameterBounds& bounds = parameter_bounds(parameter);
+    const ParameterBounds bounds = parameter_bounds(parameter);
     if (lowest) *lowest = bounds.lowest;
     if (highest) *highest = bounds.highest;
     if (preset) *preset = bounds.preset;

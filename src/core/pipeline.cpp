@@ -77,6 +77,14 @@ const char* method_name(uint32_t stage, uint32_t number) {
   return nullptr;
 }
 
+uint32_t highest_method(uint32_t stage) {
+  uint32_t highest = 0;
+  for (const Method& method : kMethods) {
+    if (method.stage == stage) highest = std::max(highest, method.number);
+  }
+  return highest;
+}
+
 uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width) {
   const uint32_t asked = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
   const uint32_t leaf_size = asked != 0 ? std::min(asked, width) : width;

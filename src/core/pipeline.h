@@ -12,6 +12,9 @@ namespace kiwami {
 /// The name of a method of a KIWAMI_STAGE_*; nullptr where there is none of this number.
 const char* method_name(uint32_t stage, uint32_t method);
 
+/// The highest number of a method of a stage; there may be gaps below it.
+uint32_t highest_method(uint32_t stage);
+
 /// The most primitives that a leaf of the binary tree owns, for a wide tree of this width.
 uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width);
 

@@ -10,22 +10,37 @@ namespace kiwami {
 
 namespace {
 
-constexpr uint32_t kLastParameter = KIWAMI_PARAMETER_BUILDER;
-
-/// By number; number 0 names nothing.
-constexpr ParameterBounds kBounds[kLastParameter + 1] = {
-    {0, 0, 0, true},
-    {0, 16, 0, true},                   // BVH_WIDTH
-    {0, 1, 1, true},                    // MERGE_LEAVES
-    {1, 64, 8, true},                   // MERGE_RING
-    {4, 32, 16, true},                  // BIN_COUNT
-    {0, 16, 0, true},                   // MAX_LEAF_SIZE
-    {0.01, 100.0, 1.0, false},          // NODE_COST
-    {0.01, 100.0, 1.0, false},          // LEAF_COST
-    {0, 1, 0, true},                    // VALIDATE_BUILD
-    {0, 1, 1, true},                    // CONTRACTION
-    {0, KIWAMI_BUILDER_PLOC, 0, true},  // BUILDER
+struct NumberedBounds {
+  uint32_t parameter;
+  ParameterBounds bounds;
 };
+
+/// The numbers have gaps. Where a method is chosen, the highest bound is its stage's highest
+/// number.
+constexpr NumberedBounds kBounds[] = {
+    {KIWAMI_PARAMETER_BVH_WIDTH, {0, 16, 0, true}},
+    {KIWAMI_PARAMETER_MERGE_LEAVES, {0, 1, 1, true}},
+    {KIWAMI_PARAMETER_MERGE_RING, {1, 64, 8, true}},
+    {KIWAMI_PARAMETER_BIN_COUNT, {4, 32, 16, true}},
+    {KIWAMI_PARAMETER_MAX_LEAF_SIZE, {0, 16, 0, true}},
+    {KIWAMI_PARAMETER_NODE_COST, {0.01, 100.0, 1.0, false}},
+    {KIWAMI_PARAMETER_LEAF_COST, {0.01, 100.0, 1.0, false}},
+    {KIWAMI_PARAMETER_VALIDATE_BUILD, {0, 1, 0, true}},
+    {KIWAMI_PARAMETER_CONTRACTION, {0, 0, KIWAMI_CONTRACTION_OPTIMAL, true}},
+    {KIWAMI_PARAMETER_BUILDER, {0, 0, KIWAMI_BUILDER_BINNED_SAH, true}},
+};
+
+/// The stage whose method a parameter chooses; 0: it chooses none.
+uint32_t stage_of(uint32_t parameter) {
+  switch (parameter) {
+    case KIWAMI_PARAMETER_CONTRACTION:
+      return KIWAMI_STAGE_CONTRACTION;
+    case KIWAMI_PARAMETER_BUILDER:
+      return KIWAMI_STAGE_BUILDER;
+    default:
+      return 0;
+  }
+}
 
 /// Throws unless a method of this stage has the number.
 void check_method(uint32_t stage, const char* stage_name, double number) {
@@ -42,23 +57,23 @@ bool is_whole(double value) {
 
 }  // namespace
 
-const ParameterBounds& parameter_bounds(uint32_t parameter) {
-  if (parameter == 0 || parameter > kLastParameter) {
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
-                "parameter is %u, expected one of KIWAMI_PARAMETER_* (1 to %u)", parameter,
-                kLastParameter);
+ParameterBounds parameter_bounds(uint32_t parameter) {
+  for (const NumberedBounds& known : kBounds) {
+    if (known.parameter != parameter) continue;
+    ParameterBounds bounds = known.bounds;
+    if (const uint32_t stage = stage_of(parameter)) bounds.highest = highest_method(stage);
+    return bounds;
   }
-  return kBounds[parameter];
+  throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "parameter is %u, expected one of KIWAMI_PARAMETER_*",
+              parameter);
 }
 
 SceneParameters::SceneParameters() {
-  for (uint32_t parameter = 0; parameter <= kLastParameter; ++parameter) {
-    values_[parameter] = kBounds[parameter].preset;
-  }
+  for (const NumberedBounds& known : kBounds) values_[known.parameter] = known.bounds.preset;
 }
 
 void SceneParameters::set(uint32_t parameter, double value) {
-  const ParameterBounds& bounds = parameter_bounds(parameter);
+  const ParameterBounds bounds = parameter_bounds(parameter);
   if (!(bounds.lowest <= value && value <= bounds.highest)) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "value is %g for parameter %u, expected %g to %g",
                 value, parameter, bounds.lowest, bounds.highest);

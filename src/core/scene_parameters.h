@@ -15,7 +15,7 @@ struct ParameterBounds {
 };
 
 /// Throws Error(INVALID_ARGUMENT) for an unknown parameter.
-const ParameterBounds& parameter_bounds(uint32_t parameter);
+ParameterBounds parameter_bounds(uint32_t parameter);
 
 /// The values of all KIWAMI_PARAMETER_*, always within their bounds.
 class SceneParameters {
@@ -34,7 +34,10 @@ class SceneParameters {
   uint32_t whole(uint32_t parameter) const { return static_cast<uint32_t>(values_[parameter]); }
 
  private:
-  double values_[KIWAMI_PARAMETER_BUILDER + 1];
+  /// All numbers are below this.
+  static constexpr uint32_t kLimit = 64;
+
+  double values_[kLimit] = {};
   uint32_t optimizers_[KIWAMI_MAX_OPTIMIZERS];
   size_t optimizer_count_ = 0;
 };

@@ -161,8 +161,20 @@ TEST_F(SceneTest, SharedBuffersAreNotCountedAndCopiesCountOnce) {
             4 * (triangles.vertices.size() + triangles.indices.size()));
 }
 
+/// The numbers of KIWAMI_PARAMETER_*, which have gaps.
+std::vector<uint32_t> parameter_numbers() {
+  std::vector<uint32_t> numbers;
+  for (uint32_t number = 0; number < 256; ++number) {
+    if (kiwami_parameter_bounds(number, nullptr, nullptr, nullptr) == KIWAMI_OK) {
+      numbers.push_back(number);
+    }
+  }
+  return numbers;
+}
+
 TEST_F(SceneTest, ParametersHaveBoundsAndDefaults) {
-  for (uint32_t parameter = 1; parameter <= KIWAMI_PARAMETER_BUILDER; ++parameter) {
+  EXPECT_GE(parameter_numbers().size(), 10u);
+  for (const uint32_t parameter : parameter_numbers()) {
     double lowest, highest, preset;
     ASSERT_EQ(kiwami_parameter_bounds(parameter, &lowest, &highest, &preset), KIWAMI_OK);
     ASSERT_EQ(kiwami_parameter_bounds(parameter, nullptr, nullptr, nullptr), KIWAMI_OK);
@@ -178,8 +190,8 @@ TEST_F(SceneTest, ParametersHaveBoundsAndDefaults) {
     }
   }
   EXPECT_EQ(kiwami_parameter_bounds(0, nullptr, nullptr, nullptr), KIWAMI_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(kiwami_parameter_bounds(11, nullptr, nullptr, nullptr), KIWAMI_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(last_error(), "parameter is 11, expected one of KIWAMI_PARAMETER_* (1 to 10)");
+  EXPECT_EQ(kiwami_parameter_bounds(255, nullptr, nullptr, nullptr), KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(last_error(), "parameter is 255, expected one of KIWAMI_PARAMETER_*");
 }
 
 TEST_F(SceneTest, ParameterErrorsNameTheValue) {
@@ -193,7 +205,7 @@ TEST_F(SceneTest, ParameterErrorsNameTheValue) {
   expect(KIWAMI_PARAMETER_MERGE_RING, 2.5,
          "value is 2.5 for parameter 3, expected a whole number from 1 to 64");
   expect(KIWAMI_PARAMETER_NODE_COST, 0, "value is 0 for parameter 6, expected 0.01 to 100");
-  expect(77, 0, "parameter is 77, expected one of KIWAMI_PARAMETER_* (1 to 10)");
+  expect(77, 0, "parameter is 77, expected one of KIWAMI_PARAMETER_*");
   EXPECT_EQ(kiwami_scene_set_parameter(nullptr, 1, 4), KIWAMI_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(last_error(), "scene is NULL, expected a valid pointer");
 }
@@ -203,7 +215,7 @@ TEST_F(SceneTest, EveryBoundOfEveryParameterBuildsTheSameAnswers) {
   const std::vector<kiwami_ray> rays = random_rays(500, 9);
   const Geometry mesh = make_mesh(device_, triangles.desc());
   const std::vector<kiwami_hit> expected = closest_hits(make_scene(device_, mesh), rays);
-  for (uint32_t parameter = 1; parameter <= KIWAMI_PARAMETER_BUILDER; ++parameter) {
+  for (const uint32_t parameter : parameter_numbers()) {
     double bounds[2];
     kiwami_parameter_bounds(parameter, &bounds[0], &bounds[1], nullptr);
     for (double value : bounds) {
