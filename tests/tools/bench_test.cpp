@@ -104,6 +104,20 @@ TEST(Bench, ComparesWithEmbree) {
   EXPECT_TRUE(robust.at(0).at("peer").get<std::string>().ends_with(" robust"));
 }
 
+TEST(Bench, ComparesWithAPlainBinaryHierarchy) {
+  const Json rows = bench_rows({"terrain:40", "--threads", "1", "--vs", "binary"});
+  ASSERT_EQ(rows.size(), 13u);
+  for (const Json& row : rows) {
+    EXPECT_EQ(row.at("peer"), "binary BVH");
+    if (row.contains("build_ms")) {
+      expect_positive(row, {"peer_build_ms", "peer_bytes_per_triangle"});
+      continue;
+    }
+    expect_positive(row, {"peer_mrays", "ratio"});
+    EXPECT_LT(row.at("peer_disagreements"), 20) << row;
+  }
+}
+
 TEST(Bench, AnswersTheSameOnEveryIsaWidthAndApi) {
   std::map<std::string, std::set<std::string>> hashes;
   for (const std::string width : {"4", "8", "16"}) {

@@ -10,6 +10,7 @@
 
 #include "kiwami/known_scenes.h"
 #include "kiwami/options.h"
+#include "measure/baselines/baseline_peer.h"
 #include "measure/bench_rays.h"
 #include "measure/contest.h"
 #include "measure/embree_contender.h"
@@ -20,9 +21,9 @@ namespace {
 
 constexpr uint32_t kMostBuilds = 3;
 constexpr size_t kRaysPerBlock = 4096;
-// An entrance of Embree that is so much slower than its best one in the warming-up is left out.
+// An entrance of a peer that is so much slower than its best one in the warming-up is left out.
 constexpr double kHopeless = 1.6;
-// Embree is not watertight, and of triangles at the same place either may be met.
+// Peers are not watertight, and of triangles at the same place either may be met.
 constexpr double kMostDisagreements = 0.01;
 
 double per_triangle(uint64_t bytes, uint64_t triangles) {
@@ -68,7 +69,7 @@ class OwnRun {
     return rays_.any_hit ? hash_bytes(std::as_bytes(std::span(occluded_))) : hash_hits(hits_);
   }
 
-  /// As EmbreeRun::distance.
+  /// As PeerRun::distance.
   float distance(size_t i) const {
     if (!rays_.any_hit) return hits_[i].t;
     return occluded_[i] != 0 ? 0.0f : std::numeric_limits<float>::infinity();
@@ -83,21 +84,21 @@ class OwnRun {
   std::vector<uint8_t> occluded_;
 };
 
-/// One entrance of Embree that takes part in a contest.
-struct EmbreeSide {
-  EmbreeEntrance entrance;
-  std::unique_ptr<EmbreeRun> run;
+/// One entrance of a peer that takes part in a contest.
+struct PeerSide {
+  std::string entrance;
+  std::unique_ptr<PeerRun> run;
 };
 
 /// The sides that may win, after each has traced the rays once.
-std::vector<EmbreeSide> choose_embree_sides(const EmbreeContender& embree, const BenchRays& rays,
-                                            BenchApi api, uint32_t threads) {
-  std::vector<EmbreeSide> sides;
+std::vector<PeerSide> choose_peer_sides(const PeerScene& peer, const BenchRays& rays, BenchApi api,
+                                        uint32_t threads) {
+  std::vector<PeerSide> sides;
   std::vector<Contender> contenders;
-  for (const EmbreeEntrance entrance : kEmbreeEntrances) {
-    if (api == BenchApi::kSingle && entrance != EmbreeEntrance::kSingle) continue;
-    sides.push_back({entrance, embree.prepare(rays.set.rays, rays.any_hit, entrance)});
-    EmbreeRun* run = sides.back().run.get();
+  for (const PeerEntrance& entrance :
+       peer.entrances(rays.set.rays, rays.any_hit, api == BenchApi::kSingle)) {
+    sides.push_back({entrance.name, entrance.prepare()});
+    PeerRun* run = sides.back().run.get();
     contenders.push_back({[run] { run->reset(); }, [run, threads] { run->trace(threads); }, [] {}});
   }
   if (sides.size() == 1) {
@@ -108,14 +109,14 @@ std::vector<EmbreeSide> choose_embree_sides(const EmbreeContender& embree, const
   const std::vector<std::vector<double>> seconds = interleaved_seconds(contenders, 1);
   double best = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& of_one : seconds) best = std::min(best, of_one[0]);
-  std::vector<EmbreeSide> hopeful;
+  std::vector<PeerSide> hopeful;
   for (size_t i = 0; i < sides.size(); ++i) {
     if (seconds[i][0] <= kHopeless * best) hopeful.push_back(std::move(sides[i]));
   }
   return hopeful;
 }
 
-uint64_t count_disagreements(const OwnRun& own, const EmbreeRun& peer, size_t count,
+uint64_t count_disagreements(const OwnRun& own, const PeerRun& peer, size_t count,
                              float least_distance) {
   uint64_t disagreements = 0;
   for (size_t i = 0; i < count; ++i) {
@@ -143,9 +144,10 @@ class SceneBench {
  private:
   void run_device(uint32_t isa, uint32_t threads);
   BuildRow measure_builds(const Device& device, std::unique_ptr<BuiltScene>& scene,
-                          std::unique_ptr<EmbreeContender>& embree) const;
-  TraceRow measure_traces(const BuiltScene& scene, const EmbreeContender* embree,
-                          const BenchRays& rays, BenchApi api, const BenchCase& of);
+                          std::unique_ptr<PeerScene>& peer) const;
+  std::unique_ptr<PeerScene> build_peer(const Device& device) const;
+  TraceRow measure_traces(const BuiltScene& scene, const PeerScene* peer, const BenchRays& rays,
+                          BenchApi api, const BenchCase& of);
   void check_hash(TraceRow& row, uint64_t hash);
   void make_rays(const BuiltScene& scene);
 
@@ -166,14 +168,13 @@ void SceneBench::run_device(uint32_t isa, uint32_t threads) {
                      std::to_string(device.info().thread_count));
   }
   std::unique_ptr<BuiltScene> scene;
-  // Its device has as many threads as ours: oneTBB has one limit for all who use it.
-  std::unique_ptr<EmbreeContender> embree;
-  const BuildRow build = measure_builds(device, scene, embree);
+  std::unique_ptr<PeerScene> peer;
+  const BuildRow build = measure_builds(device, scene, peer);
   if (rays_.empty()) make_rays(*scene);
   listener_.on_build(build);
   for (const BenchApi api : settings_.apis) {
     for (const BenchRays& rays : rays_) {
-      listener_.on_trace(measure_traces(*scene, embree.get(), rays, api, build.of));
+      listener_.on_trace(measure_traces(*scene, peer.get(), rays, api, build.of));
     }
   }
 }
@@ -185,20 +186,27 @@ void SceneBench::make_rays(const BuiltScene& scene) {
   least_distance_ = 1e-6f * box.diagonal();
 }
 
+std::unique_ptr<PeerScene> SceneBench::build_peer(const Device& device) const {
+  if (settings_.peer == BenchPeer::kBinary) return make_binary_peer(file_);
+  if (settings_.peer == BenchPeer::kNone) return nullptr;
+  // Its device has as many threads as ours: oneTBB has one limit for all who use it.
+  return EmbreeContender::create(file_, device.info().isa, device.info().thread_count,
+                                 settings_.robust);
+}
+
 BuildRow SceneBench::measure_builds(const Device& device, std::unique_ptr<BuiltScene>& scene,
-                                    std::unique_ptr<EmbreeContender>& embree) const {
+                                    std::unique_ptr<PeerScene>& peer) const {
   std::vector<double> own;
   std::vector<double> theirs;
   std::vector<double> ratios;
   for (uint32_t i = 0; i < std::min(settings_.rounds, kMostBuilds); ++i) {
     scene.reset();
-    embree.reset();
+    peer.reset();
     scene = std::make_unique<BuiltScene>(device, file_, settings_.build);
     own.push_back(scene->info().build_seconds);
-    if (!settings_.with_embree) continue;
-    embree = EmbreeContender::create(file_, device.info().isa, device.info().thread_count,
-                                     settings_.robust);
-    theirs.push_back(embree->build_seconds());
+    peer = build_peer(device);
+    if (!peer) continue;
+    theirs.push_back(peer->build_seconds());
     ratios.push_back(theirs.back() / own.back());
   }
   const kiwami_scene_info& info = scene->info();
@@ -209,9 +217,9 @@ BuildRow SceneBench::measure_builds(const Device& device, std::unique_ptr<BuiltS
   row.bytes_per_triangle = per_triangle(info.total_bytes, info.triangle_count);
   row.peak_bytes_per_triangle = per_triangle(info.peak_build_bytes, info.triangle_count);
   row.sah = info.sah_cost;
-  if (embree) {
+  if (peer) {
     row.peer = PeerBuild{median(theirs) * 1e3, median(ratios),
-                         per_triangle(embree->bytes(), info.triangle_count)};
+                         per_triangle(peer->bytes(), info.triangle_count)};
   }
   return row;
 }
@@ -225,7 +233,7 @@ void SceneBench::check_hash(TraceRow& row, uint64_t hash) {
   }
 }
 
-TraceRow SceneBench::measure_traces(const BuiltScene& scene, const EmbreeContender* embree,
+TraceRow SceneBench::measure_traces(const BuiltScene& scene, const PeerScene* peer,
                                     const BenchRays& rays, BenchApi api, const BenchCase& of) {
   const size_t count = rays.set.rays.size();
   const double millions = static_cast<double>(count) * 1e-6;
@@ -241,10 +249,10 @@ TraceRow SceneBench::measure_traces(const BuiltScene& scene, const EmbreeContend
                                           check_hash(row, own.hash());
                                           listener_.on_round(count);
                                         }}};
-  std::vector<EmbreeSide> sides;
-  if (embree != nullptr) sides = choose_embree_sides(*embree, rays, api, of.threads);
-  for (const EmbreeSide& side : sides) {
-    EmbreeRun* run = side.run.get();
+  std::vector<PeerSide> sides;
+  if (peer != nullptr) sides = choose_peer_sides(*peer, rays, api, of.threads);
+  for (const PeerSide& side : sides) {
+    PeerRun* run = side.run.get();
     contenders.push_back({[run] { run->reset(); }, [run, &of] { run->trace(of.threads); },
                           [&] { listener_.on_round(count); }});
   }
@@ -259,12 +267,12 @@ TraceRow SceneBench::measure_traces(const BuiltScene& scene, const EmbreeContend
   }
   std::vector<double> ratios;
   for (size_t i = 0; i < settings_.rounds; ++i) ratios.push_back(seconds[best][i] / seconds[0][i]);
-  const EmbreeSide& side = sides[best - 1];
-  row.peer = PeerTrace{entrance_name(side.entrance, rays.any_hit), millions / median(seconds[best]),
-                       median(ratios), count_disagreements(own, *side.run, count, least_distance_)};
+  const PeerSide& side = sides[best - 1];
+  row.peer = PeerTrace{side.entrance, millions / median(seconds[best]), median(ratios),
+                       count_disagreements(own, *side.run, count, least_distance_)};
   if (static_cast<double>(row.peer->disagreements) >
       kMostDisagreements * static_cast<double>(count)) {
-    row.wrong = format("%llu of %zu answers contradict Embree's",
+    row.wrong = format("%llu of %zu answers contradict the peer's",
                        static_cast<unsigned long long>(row.peer->disagreements), count);
   }
   return row;
@@ -284,8 +292,10 @@ size_t trace_row_count(const BenchSettings& settings) {
          settings.rays.size();
 }
 
-std::string peer_name(bool robust) {
-  return std::string("Embree ") + embree_version() + (robust ? " robust" : "");
+std::string peer_name(const BenchSettings& settings) {
+  if (settings.peer == BenchPeer::kNone) return "";
+  if (settings.peer == BenchPeer::kBinary) return "binary BVH";
+  return std::string("Embree ") + embree_version() + (settings.robust ? " robust" : "");
 }
 
 }  // namespace kiwami::tools

@@ -19,6 +19,9 @@ enum class BenchApi {
 };
 const char* bench_api_name(BenchApi api);
 
+/// Who traces the same rays.
+enum class BenchPeer { kNone, kEmbree, kBinary };
+
 /// What is measured. Each combination of the lists is a row.
 struct BenchSettings {
   std::vector<std::string> rays;
@@ -27,7 +30,7 @@ struct BenchSettings {
   std::vector<uint32_t> isas;  ///< KIWAMI_ISA_*
   BuildOptions build;
   ViewOptions view;
-  bool with_embree = true;
+  BenchPeer peer = BenchPeer::kEmbree;
   bool robust = false;  ///< Embree's robust scene flag
   uint32_t rounds = 5;
   size_t ray_count = 1u << 20;
@@ -90,7 +93,7 @@ void run_bench(const std::string& scene, const BenchSettings& settings,
 /// How many rows of traces run_bench will make of a scene.
 size_t trace_row_count(const BenchSettings& settings);
 
-/// "Embree 3.13.5 robust".
-std::string peer_name(bool robust);
+/// "Embree 3.13.5 robust", "binary BVH", or "".
+std::string peer_name(const BenchSettings& settings);
 
 }  // namespace kiwami::tools

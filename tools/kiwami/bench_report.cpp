@@ -61,17 +61,17 @@ nlohmann::ordered_json to_json(const TraceRow& row, const std::string& peer) {
   return json;
 }
 
-void print_row(const BuildRow& row) {
+void print_row(const BuildRow& row, const std::string& peer) {
   std::printf("\n%s: %s triangles; %s, %u wide, %u thread%s\n", row.of.scene.c_str(),
               grouped(row.of.triangles).c_str(), row.of.isa.c_str(), row.of.width, row.of.threads,
               row.of.threads == 1 ? "" : "s");
   std::printf("  build %.1f ms", row.milliseconds);
   if (row.peer) {
-    std::printf(" (Embree %.1f ms, ratio %.2f)", row.peer->milliseconds, row.peer->ratio);
+    std::printf(" (%s %.1f ms, ratio %.2f)", peer.c_str(), row.peer->milliseconds, row.peer->ratio);
   }
   std::printf("; %.1f bytes per triangle, %.1f at the peak", row.bytes_per_triangle,
               row.peak_bytes_per_triangle);
-  if (row.peer) std::printf(" (Embree %.1f)", row.peer->bytes_per_triangle);
+  if (row.peer) std::printf(" (%s %.1f)", peer.c_str(), row.peer->bytes_per_triangle);
   std::printf("; SAH %.2f\n", row.sah);
 }
 
@@ -97,9 +97,9 @@ void RatioSummary::add(const TraceRow& row) {
   ratios_[group + ", " + query_name(row.any_hit)].push_back(row.peer->ratio);
 }
 
-void RatioSummary::print() const {
+void RatioSummary::print(const std::string& peer) const {
   if (ratios_.empty()) return;
-  std::printf("\nGeometric means of the ratios to Embree\n");
+  std::printf("\nGeometric means of the ratios to %s\n", peer.c_str());
   for (const auto& [group, ratios] : ratios_) {
     std::printf("  %-32s %5.2f of %zu\n", group.c_str(), geometric_mean(ratios), ratios.size());
   }

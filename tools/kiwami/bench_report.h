@@ -14,7 +14,7 @@ namespace kiwami::tools {
 nlohmann::ordered_json to_json(const BuildRow& row, const std::string& peer);
 nlohmann::ordered_json to_json(const TraceRow& row, const std::string& peer);
 
-void print_row(const BuildRow& row);
+void print_row(const BuildRow& row, const std::string& peer);
 void print_row(const TraceRow& row);
 
 /// The ratios to the peer, gathered by api, threads and kind of query.
@@ -22,7 +22,7 @@ class RatioSummary {
  public:
   void add(const TraceRow& row);
   /// The geometric means; nothing when there are no ratios.
-  void print() const;
+  void print(const std::string& peer) const;
 
  private:
   std::map<std::string, std::vector<double>> ratios_;

@@ -108,8 +108,10 @@ BenchSettings make_settings(const BenchOptions& options) {
   }
   check_view_options(options.view);
   settings.view = options.view;
-  settings.with_embree = options.peer == "embree";
-  if (settings.with_embree && *embree_version() == '\0') {
+  settings.peer = options.peer == "embree"   ? BenchPeer::kEmbree
+                  : options.peer == "binary" ? BenchPeer::kBinary
+                                             : BenchPeer::kNone;
+  if (settings.peer == BenchPeer::kEmbree && *embree_version() == '\0') {
     throw UsageError("--vs is embree, but this command was built without Embree");
   }
   settings.robust = options.robust;
@@ -136,7 +138,7 @@ int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   const std::vector<std::string> scenes = choose_scenes(options);
   if (!options.json.empty()) check_writable("--json", options.json);
-  const std::string peer = peer_name(settings.robust);
+  const std::string peer = peer_name(settings);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   RatioSummary summary;
   bool all_right = true;
@@ -146,7 +148,7 @@ int run(const BenchOptions& options) {
   BenchListener listener;
   listener.on_build = [&](const BuildRow& row) {
     bar.clear();
-    print_row(row);
+    print_row(row, peer);
     rows.push_back(to_json(row, peer));
   };
   listener.on_trace = [&](const TraceRow& row) {
@@ -164,7 +166,7 @@ int run(const BenchOptions& options) {
     if (!options.json.empty()) write_file(options.json, rows.dump(1) + "\n");
   }
   bar.clear();
-  summary.print();
+  summary.print(peer);
   return all_right ? 0 : kWrongAnswer;
 }
 
@@ -191,8 +193,11 @@ void add_scene_options(CLI::App& command, BenchOptions& options) {
 }
 
 void add_measuring_options(CLI::App& command, BenchOptions& options) {
-  command.add_option("--vs", options.peer, "Who traces the same rays: embree or none")
-      ->check(one_of({"embree", "none"}))
+  command
+      .add_option("--vs", options.peer,
+                  "Who traces the same rays: embree, binary (a plain hierarchy without vectors) or "
+                  "none")
+      ->check(one_of({"embree", "binary", "none"}))
       ->capture_default_str();
   command.add_flag("--robust", options.robust, "Embree with its robust scene flag");
   command.add_option("--rays", options.rays, "Which ray sets, between commas")

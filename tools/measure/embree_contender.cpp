@@ -73,7 +73,7 @@ float any_distance(float tfar) {
 
 /// One ray a call, or a stream of them; Query is RTCRayHit, or RTCRay for any hit.
 template <typename Query>
-class ArrayRun final : public EmbreeRun {
+class ArrayRun final : public PeerRun {
  public:
   ArrayRun(RTCScene scene, std::span<const kiwami_ray> rays, bool stream, bool coherent)
       : scene_(scene), rays_(rays), stream_(stream), coherent_(coherent), queries_(rays.size()) {}
@@ -142,7 +142,7 @@ class ArrayRun final : public EmbreeRun {
 
 /// Packets of Lanes rays; Query is RTCRayHit8 or 16, or RTCRay8 or 16 for any hit.
 template <size_t Lanes, typename Query>
-class PacketRun final : public EmbreeRun {
+class PacketRun final : public PeerRun {
  public:
   PacketRun(RTCScene scene, std::span<const kiwami_ray> rays, bool coherent)
       : scene_(scene),
@@ -232,16 +232,27 @@ class Embree3Contender final : public EmbreeContender {
   double build_seconds() const override { return scene_.build_seconds(); }
   uint64_t bytes() const override { return scene_.bytes(); }
 
-  std::unique_ptr<EmbreeRun> prepare(std::span<const kiwami_ray> rays, bool any_hit,
-                                     EmbreeEntrance entrance) const override {
+  std::vector<PeerEntrance> entrances(std::span<const kiwami_ray> rays, bool any_hit,
+                                      bool singly) const override {
+    std::vector<PeerEntrance> all;
+    for (const EmbreeEntrance entrance : kEmbreeEntrances) {
+      if (singly && entrance != EmbreeEntrance::kSingle) continue;
+      all.push_back({entrance_name(entrance, any_hit),
+                     [this, rays, any_hit, entrance] { return prepare(rays, any_hit, entrance); }});
+    }
+    return all;
+  }
+
+  std::unique_ptr<PeerRun> prepare(std::span<const kiwami_ray> rays, bool any_hit,
+                                   EmbreeEntrance entrance) const override {
     return any_hit ? make_run<RTCRay, RTCRay8, RTCRay16>(rays, entrance)
                    : make_run<RTCRayHit, RTCRayHit8, RTCRayHit16>(rays, entrance);
   }
 
  private:
   template <typename One, typename Eight, typename Sixteen>
-  std::unique_ptr<EmbreeRun> make_run(std::span<const kiwami_ray> rays,
-                                      EmbreeEntrance entrance) const {
+  std::unique_ptr<PeerRun> make_run(std::span<const kiwami_ray> rays,
+                                    EmbreeEntrance entrance) const {
     const bool coherent = is_coherent(entrance);
     switch (entrance) {
       case EmbreeEntrance::kPacket8:
