@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Kiwami: trees to look at: the nodes and primitives of an acceleration structure as plain arrays.
+ * Kiwami: trees to look at: the nodes and primitives of an acceleration structure as plain arrays,
+ * what they cost by the metrics of the field, and how many of them rays visit.
  */
 #ifndef KIWAMI_BVH_H
 #define KIWAMI_BVH_H
 
-#include "scene.h"
+#include "trace.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -53,6 +54,67 @@ typedef struct kiwami_bvh_info {
   uint64_t bytes;           /* memory that the handle holds */
 } kiwami_bvh_info;
 
+/* What kiwami_bvh_measure may be told. */
+typedef struct kiwami_bvh_measure_desc {
+  uint32_t struct_size; /* bytes of this struct, set by kiwami_bvh_measure_desc_init */
+  uint32_t flags;       /* KIWAMI_MEASURE_* */
+  double node_cost;     /* of visiting a node, 0 to 1e6; 1 */
+  double leaf_cost;     /* of one test of a block of primitives, 0 to 1e6; 1 */
+  uint32_t block_size;  /* primitives that one test takes at once; 0: the tree's leaf_width, so that
+                         * each leaf is one test */
+  uint32_t reserved;    /* 0 */
+} kiwami_bvh_measure_desc;
+
+enum {
+  /* Leave out the end-point overlap, the one metric that is not cheap. */
+  KIWAMI_MEASURE_WITHOUT_EPO = 1u << 0
+};
+
+/* The cost of a tree. C is the cost of a node: node_cost, or leaf_cost times the tests of a leaf.
+ */
+typedef struct kiwami_bvh_measures {
+  uint32_t struct_size; /* set by the caller to sizeof(kiwami_bvh_measures) */
+  uint32_t reserved;    /* 0 */
+  double sah;       /* the surface area heuristic: the sum of C * area of the node's box, over the
+                     * area of the root's box; the plain sum of C if that has none. The cost of
+                     * a random line that meets the root. */
+  double epo;       /* the end-point overlap: the sum of C * surface of other primitives within
+                     * the node's box, over all surface. What rays pay to end among boxes that
+                     * overlap. 0 if it was left out, and for trees without triangles. */
+  double node_area; /* the sum of the areas of the nodes that have children, over the root's; their
+                     * number if the root has none */
+  double leaf_area; /* the same of the leaves */
+  double surface_area; /* of all triangles; 0 if the end-point overlap was left out */
+} kiwami_bvh_measures;
+
+/* What one node adds. The sums over all nodes are those of kiwami_bvh_measures. 24 bytes, at any
+ * address. */
+typedef struct kiwami_bvh_node_measures {
+  double area; /* of its box */
+  double sah;
+  double epo;
+} kiwami_bvh_node_measures;
+
+/* What rays visited. */
+typedef struct kiwami_visits {
+  uint32_t struct_size;          /* set by the caller to sizeof(kiwami_visits) */
+  uint32_t reserved;             /* 0 */
+  uint64_t ray_count;            /* rays that were traced, bad ones included */
+  uint64_t hit_count;            /* rays that hit something */
+  uint64_t node_visits;          /* wide nodes, of all rays */
+  uint64_t leaf_visits;          /* leaf blocks, of all rays */
+  double leaf_count_variability; /* the standard deviation of the leaf blocks that a ray visits */
+} kiwami_visits;
+
+/* What one ray visited. 8 bytes, at any address. */
+typedef struct kiwami_ray_visits {
+  uint32_t node_visits;
+  uint32_t leaf_visits;
+} kiwami_ray_visits;
+
+/* What rays look for while they are counted. */
+enum { KIWAMI_COUNT_CLOSEST_HIT = 0, KIWAMI_COUNT_ANY_HIT = 1 };
+
 /* Gives the wide tree of a committed scene, as the kernels traverse it.
  *   bvh       receives a handle, with one reference, or NULL on error. It shows the tree of the
  *             last commit, also after the scene has gone or was committed again.
@@ -94,6 +156,41 @@ KIWAMI_API kiwami_result kiwami_bvh_get_nodes(const kiwami_bvh* bvh, size_t firs
 KIWAMI_API kiwami_result kiwami_bvh_get_primitives(const kiwami_bvh* bvh, size_t first,
                                                    size_t count, kiwami_bvh_primitive* primitives,
                                                    size_t stride);
+
+/* Fills *desc with the defaults: costs of 1, one test a leaf, all metrics.
+ *   errors    INVALID_ARGUMENT: desc is NULL, or size is below 8
+ * [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_bvh_measure_desc_init(kiwami_bvh_measure_desc* desc, size_t size);
+
+/* Measures a tree, on the device's threads. The numbers do not depend on how many there are.
+ *   desc      NULL for the defaults
+ *   measures  struct_size set by the caller; the fields that fit are filled. May be NULL.
+ *   nodes     receives what each node adds, node_count elements stride bytes apart (0:
+ *             sizeof(kiwami_bvh_node_measures)), in the order of kiwami_bvh_get_nodes. May be NULL.
+ *   errors    INVALID_ARGUMENT: bvh is NULL, a field of desc, struct_size below 8, a stride too
+ *             small; OUT_OF_MEMORY; CALLBACK: the runner failed
+ * [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_bvh_measure(const kiwami_bvh* bvh,
+                                            const kiwami_bvh_measure_desc* desc,
+                                            kiwami_bvh_measures* measures,
+                                            kiwami_bvh_node_measures* nodes, size_t stride);
+
+/* Traces rays by kernels that count, each ray alone, on the device's threads. The answers are those
+ * of kiwami_closest_hit (kiwami_any_hit), but the visits are not the same on every ISA, and packets
+ * of rays make fewer.
+ *   rays      count rays, ray_stride bytes apart (0: sizeof(kiwami_ray)); NULL only if count is 0
+ *   query     KIWAMI_COUNT_*
+ *   visits    struct_size set by the caller; the fields that fit are filled. May be NULL.
+ *   each      receives what each ray visited, count elements each_stride bytes apart (0:
+ *             sizeof(kiwami_ray_visits)). May be NULL.
+ *   errors    INVALID_ARGUMENT: NULL, an unknown query, struct_size below 8, a stride too small;
+ *             INVALID_STATE: never committed; OUT_OF_MEMORY; CALLBACK: the runner failed
+ * [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_count_visits(const kiwami_scene* scene,
+                                                   const kiwami_ray* rays, size_t ray_stride,
+                                                   size_t count, uint32_t query,
+                                                   kiwami_visits* visits, kiwami_ray_visits* each,
+                                                   size_t each_stride);
 
 #ifdef __cplusplus
 }

@@ -2,6 +2,7 @@
 #include "kiwami/bvh.h"
 
 #include "api/check.h"
+#include "core/visits.h"
 #include "math/float_environment.h"
 
 using namespace kiwami;
@@ -11,22 +12,50 @@ namespace {
 
 constexpr size_t kMinimumInfoSize = 8;
 
-/// Copies elements of a tree out to a strided array.
-template <typename T>
-void copy_out(const Array<T>& elements, const char* name, size_t first, size_t count, T* target,
-              size_t stride) {
-  if (first > elements.size() || count > elements.size() - first) {
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
-                "first is %zu and count is %zu, expected some of the %zu %s of the tree", first,
-                count, elements.size(), name);
-  }
+constexpr size_t kMinimumDescSize = 8;
+constexpr double kGreatestCost = 1e6;
+
+constexpr kiwami_bvh_measure_desc kDefaultMeasureDesc = {0, 0, 1.0, 1.0, 0, 0};
+
+/// Throws unless the tree has all of count elements from first on.
+void check_range(const char* name, size_t first, size_t count, size_t size) {
+  if (first <= size && count <= size - first) return;
+  throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+              "first is %zu and count is %zu, expected some of the %zu %s of the tree", first,
+              count, size, name);
+}
+
+/// Writes count elements, element_of(i) each, to an array of the caller.
+template <typename T, typename ElementOf>
+void copy_out(const char* name, T* target, size_t stride, size_t count, ElementOf&& element_of) {
   if (count == 0) return;
   check_array(name, target, stride, sizeof(T), count);
   const size_t step = stride ? stride : sizeof(T);
-  auto* bytes = reinterpret_cast<unsigned char*>(target);
+  auto* const bytes = reinterpret_cast<unsigned char*>(target);
   for (size_t i = 0; i < count; ++i) {
-    std::memcpy(bytes + i * step, &elements[first + i], sizeof(T));
+    const T element = element_of(i);
+    std::memcpy(bytes + i * step, &element, sizeof element);
   }
+}
+
+void check_cost(const char* name, double cost) {
+  if (cost >= 0.0 && cost <= kGreatestCost) return;
+  throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "%s is %g, expected 0 to %g", name, cost,
+              kGreatestCost);
+}
+
+kiwami_bvh_measure_desc read_measure_desc(const kiwami_bvh_measure_desc* desc) {
+  if (!desc) return kDefaultMeasureDesc;
+  const kiwami_bvh_measure_desc checked =
+      read_descriptor(desc, kMinimumDescSize, "desc", kDefaultMeasureDesc);
+  if (checked.flags & ~uint32_t{KIWAMI_MEASURE_WITHOUT_EPO}) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "desc.flags is 0x%x, expected KIWAMI_MEASURE_* bits",
+                checked.flags);
+  }
+  check_cost("desc.node_cost", checked.node_cost);
+  check_cost("desc.leaf_cost", checked.leaf_cost);
+  check_reserved("desc.reserved", checked.reserved);
+  return checked;
 }
 
 }  // namespace
@@ -36,7 +65,7 @@ extern "C" {
 kiwami_result kiwami_scene_get_bvh(const kiwami_scene* scene, kiwami_bvh** bvh) {
   if (bvh) *bvh = nullptr;
   return guarded(device_of(scene), [&] {
-    const CommittedScene& committed = committed_of(scene);
+    CommittedScene& committed = committed_of(scene);
     check_not_null(bvh, "bvh");
     const DefaultFloatEnvironment environment;
     *bvh = reinterpret_cast<kiwami_bvh*>(Bvh::create(object_of(scene)->device(), committed));
@@ -62,7 +91,9 @@ kiwami_result kiwami_bvh_get_nodes(const kiwami_bvh* bvh, size_t first, size_t c
                                    kiwami_bvh_node* nodes, size_t stride) {
   return guarded(device_of(bvh), [&] {
     check_not_null(bvh, "bvh");
-    copy_out(object_of(bvh)->nodes(), "nodes", first, count, nodes, stride);
+    const Bvh& tree = *object_of(bvh);
+    check_range("nodes", first, count, tree.nodes().size());
+    copy_out("nodes", nodes, stride, count, [&](size_t i) { return tree.nodes()[first + i]; });
   });
 }
 
@@ -70,7 +101,51 @@ kiwami_result kiwami_bvh_get_primitives(const kiwami_bvh* bvh, size_t first, siz
                                         kiwami_bvh_primitive* primitives, size_t stride) {
   return guarded(device_of(bvh), [&] {
     check_not_null(bvh, "bvh");
-    copy_out(object_of(bvh)->primitives(), "primitives", first, count, primitives, stride);
+    const Bvh& tree = *object_of(bvh);
+    check_range("primitives", first, count, tree.primitive_count());
+    copy_out("primitives", primitives, stride, count,
+             [&](size_t i) { return tree.primitive(first + i); });
+  });
+}
+
+kiwami_result kiwami_bvh_measure_desc_init(kiwami_bvh_measure_desc* desc, size_t size) {
+  return guarded(
+      nullptr, [&] { init_descriptor(desc, size, kMinimumDescSize, "desc", kDefaultMeasureDesc); });
+}
+
+kiwami_result kiwami_bvh_measure(const kiwami_bvh* bvh, const kiwami_bvh_measure_desc* desc,
+                                 kiwami_bvh_measures* measures, kiwami_bvh_node_measures* nodes,
+                                 size_t stride) {
+  return guarded(device_of(bvh), [&] {
+    check_not_null(bvh, "bvh");
+    const DefaultFloatEnvironment environment;
+    const BvhMeasures measured = object_of(bvh)->measure(read_measure_desc(desc));
+    if (measures) write_info(measures, kMinimumInfoSize, "measures", measured.totals);
+    if (nodes) {
+      copy_out("nodes", nodes, stride, measured.nodes.size(),
+               [&](size_t i) { return measured.nodes[i]; });
+    }
+  });
+}
+
+kiwami_result kiwami_scene_count_visits(const kiwami_scene* scene, const kiwami_ray* rays,
+                                        size_t ray_stride, size_t count, uint32_t query,
+                                        kiwami_visits* visits, kiwami_ray_visits* each,
+                                        size_t each_stride) {
+  return guarded(device_of(scene), [&] {
+    const CommittedScene& committed = committed_of(scene);
+    if (query != KIWAMI_COUNT_CLOSEST_HIT && query != KIWAMI_COUNT_ANY_HIT) {
+      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "query is %u, expected one of KIWAMI_COUNT_*",
+                  query);
+    }
+    if (count != 0) check_array("rays", rays, ray_stride, sizeof(kiwami_ray), count);
+    if (count != 0 && each) {
+      check_array("each", each, each_stride, sizeof(kiwami_ray_visits), count);
+    }
+    const kiwami_visits counted = count_visits(
+        committed, rays, ray_stride ? ray_stride : sizeof(kiwami_ray), count,
+        query == KIWAMI_COUNT_ANY_HIT, each, each_stride ? each_stride : sizeof(kiwami_ray_visits));
+    if (visits) write_info(visits, kMinimumInfoSize, "visits", counted);
   });
 }
 

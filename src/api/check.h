@@ -72,14 +72,20 @@ inline const Device* device_of(const kiwami_bvh* bvh) {
 }
 
 /// What a scene committed; throws Error for a scene that is NULL or was never committed.
-inline const CommittedScene& committed_of(const kiwami_scene* scene) {
+inline CommittedScene& committed_of(const kiwami_scene* scene) {
   check_not_null(scene, "scene");
-  const CommittedScene* committed = object_of(scene)->committed();
+  CommittedScene* committed = object_of(scene)->committed();
   if (!committed) {
     throw Error(KIWAMI_ERROR_INVALID_STATE,
                 "scene was never committed, expected a successful kiwami_scene_commit before");
   }
   return *committed;
+}
+
+inline void check_reserved(const char* name, uint32_t reserved) {
+  if (reserved != 0) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "%s is %u, expected 0", name, reserved);
+  }
 }
 
 /// Throws unless count elements of size bytes, stride bytes apart, end within the address space.

@@ -27,12 +27,6 @@ bool is_on_calling_thread(const kiwami_query* query) {
   return (checked.flags & KIWAMI_QUERY_CALLING_THREAD) != 0;
 }
 
-void check_reserved(const char* name, uint32_t reserved) {
-  if (reserved != 0) {
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "%s is %u, expected 0", name, reserved);
-  }
-}
-
 void check_output_field(const char* name, const kiwami_output_field& field, size_t count) {
   if (!field.data) return;
   if (count > 1 && field.stride < sizeof(float)) {

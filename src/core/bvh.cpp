@@ -3,30 +3,24 @@
 
 #include <algorithm>
 
+#include "bvh/end_point_overlap.h"
 #include "wide/flat_tree.h"
 
 namespace kiwami {
 namespace {
 
-/// Primitives that one task names.
-constexpr size_t kBlockSize = 8192;
-
-Array<kiwami_bvh_primitive> name_primitives(const Array<uint32_t>& ids,
-                                            const TriangleSource& source, Memory& memory,
-                                            const Parallel& parallel) {
-  Array<kiwami_bvh_primitive> names(memory, ids.size());
-  parallel.for_blocks(ids.size(), kBlockSize, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const TriangleMeshView& mesh = source.mesh_of(ids[i]);
-      names[i] = {mesh.geometry_id, ids[i] - mesh.first_id};
-    }
-  });
-  return names;
+/// Of a box. In double: a float of the bounds' extent would lose digits over many nodes.
+double area_of(const kiwami_bvh_node& node) {
+  double extent[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    extent[axis] = static_cast<double>(node.upper[axis]) - static_cast<double>(node.lower[axis]);
+  }
+  return 2.0 * (extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0]);
 }
 
 }  // namespace
 
-Bvh* Bvh::create(Device& device, const CommittedScene& scene) {
+Bvh* Bvh::create(Device& device, CommittedScene& scene) {
   return make_object<Bvh>(device.memory(), device, scene);
 }
 
@@ -35,11 +29,11 @@ void Bvh::destroy(Bvh* bvh) noexcept {
   destroy_object(device->memory(), bvh);
 }
 
-Bvh::Bvh(Device& device, const CommittedScene& scene) : device_(device) {
+Bvh::Bvh(Device& device, CommittedScene& scene)
+    : device_(device), scene_(scene), source_(scene.source()) {
   FlatTree flat = flatten(scene.tree(), device.memory());
   nodes_ = std::move(flat.nodes);
-  primitives_ =
-      name_primitives(flat.primitive_ids, scene.source(), device.memory(), device.parallel());
+  primitive_ids_ = std::move(flat.primitive_ids);
   describe(scene.tree().width, scene.tree().leaf_width);
 }
 
@@ -48,12 +42,48 @@ void Bvh::describe(uint32_t width, uint32_t leaf_width) {
   info_.width = width;
   info_.leaf_width = leaf_width;
   info_.node_count = static_cast<uint32_t>(nodes_.size());
-  info_.primitive_count = static_cast<uint32_t>(primitives_.size());
+  info_.primitive_count = static_cast<uint32_t>(primitive_ids_.size());
   for (const kiwami_bvh_node& node : nodes_) {
     info_.depth = std::max(info_.depth, node.depth);
     if (node.child_count == 0) ++info_.leaf_count;
   }
-  info_.bytes = sizeof(*this) + nodes_.bytes() + primitives_.bytes();
+  info_.bytes = sizeof(*this) + nodes_.bytes() + primitive_ids_.bytes();
+}
+
+kiwami_bvh_primitive Bvh::primitive(size_t position) const {
+  const uint32_t id = primitive_ids_[position];
+  const TriangleMeshView& mesh = source_.mesh_of(id);
+  return {mesh.geometry_id, id - mesh.first_id};
+}
+
+BvhMeasures Bvh::measure(const kiwami_bvh_measure_desc& desc) const {
+  Memory& memory = device_->memory();
+  BvhMeasures measures{{}, Array<kiwami_bvh_node_measures>(memory, nodes_.size())};
+  if (nodes_.empty()) return measures;
+  EndPointOverlap overlap;
+  const bool with_epo = (desc.flags & KIWAMI_MEASURE_WITHOUT_EPO) == 0;
+  if (with_epo) {
+    overlap = measure_end_point_overlap({nodes_.data(), nodes_.size()}, primitive_ids_, source_,
+                                        memory, device_->parallel());
+  }
+  const uint32_t block_size = desc.block_size ? desc.block_size : info_.leaf_width;
+  const double root_area = area_of(nodes_[0]);
+  kiwami_bvh_measures& totals = measures.totals;
+  totals.surface_area = overlap.surface_area;
+  for (size_t i = 0; i < nodes_.size(); ++i) {
+    const kiwami_bvh_node& node = nodes_[i];
+    const bool is_leaf = node.child_count == 0;
+    const uint32_t tests = (node.primitive_count - 1) / block_size + 1;
+    const double cost = is_leaf ? desc.leaf_cost * tests : desc.node_cost;
+    const double area = area_of(node);
+    const double relative_area = root_area > 0.0 ? area / root_area : 1.0;
+    const double epo = with_epo ? cost * overlap.foreign_area[i] : 0.0;
+    measures.nodes[i] = {area, cost * relative_area, epo};
+    totals.sah += cost * relative_area;
+    totals.epo += epo;
+    (is_leaf ? totals.leaf_area : totals.node_area) += relative_area;
+  }
+  return measures;
 }
 
 }  // namespace kiwami

@@ -76,10 +76,7 @@ size_t CommittedScene::MeshReferences::copied_bytes() const {
 
 CommittedScene::CommittedScene(Device& device, const AttachedMesh* meshes, size_t count,
                                const SceneParameters& parameters)
-    : memory_(device.memory().allocator()),
-      parallel_(&device.parallel()),
-      validates_arguments_(device.validates_arguments()),
-      references_(memory_, meshes, count) {
+    : device_(device), memory_(device.memory().allocator()), references_(memory_, meshes, count) {
   const auto start = std::chrono::steady_clock::now();
   number_triangles(meshes, count);
   const uint32_t width = width_of(parameters, device);
@@ -89,6 +86,11 @@ CommittedScene::CommittedScene(Device& device, const AttachedMesh* meshes, size_
   describe();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   info_.build_seconds = seconds.count();
+}
+
+void CommittedScene::destroy(CommittedScene* scene) noexcept {
+  const Reference<Device> device = scene->device_;
+  destroy_object(device->memory(), scene);
 }
 
 /// Running ids rise by geometry and then by primitive: their order is the order of equal hits.
@@ -120,12 +122,12 @@ void CommittedScene::number_triangles(const AttachedMesh* meshes, size_t count) 
 
 BinaryBvh CommittedScene::build_binary(const SceneParameters& parameters) {
   Array<BuildPrimitive> primitives =
-      collect_build_primitives(source(), numbered_count_, memory_, *parallel_);
+      collect_build_primitives(source(), numbered_count_, memory_, parallel());
   triangle_count_ = primitives.size();
   BinaryBvh binary = build_binary_bvh(std::move(primitives), source(), parameters, tree_.width,
-                                      memory_, *parallel_);
+                                      memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
-    primitives = collect_build_primitives(source(), numbered_count_, memory_, *parallel_);
+    primitives = collect_build_primitives(source(), numbered_count_, memory_, parallel());
     verify_binary_bvh(binary, primitives.data(), primitives.size(),
                       binary_leaf_size_of(parameters, tree_.width), memory_);
   }
@@ -136,7 +138,7 @@ void CommittedScene::build(const SceneParameters& parameters) {
   BinaryBvh binary = build_binary(parameters);
   const Bounds bounds = binary.nodes.empty() ? Bounds::empty() : binary.nodes[0].bounds;
   tree_ = build_wide_tree(std::move(binary), source(), wide_config(parameters, tree_.width),
-                          memory_, *parallel_);
+                          memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
 
   view_.tree = tree_.view;

@@ -5,6 +5,7 @@
 #include "core/device.h"
 #include "core/geometry.h"
 #include "core/memory.h"
+#include "core/object.h"
 #include "core/scene_parameters.h"
 #include "kernels/kernel_table.h"
 #include "wide/wide_tree.h"
@@ -19,18 +20,19 @@ struct AttachedMesh {
 
 /// What a commit makes and the kernels read: the tree and the tables around it. Holds the
 /// geometries that it was built from, so that it outlives their detachment. Never changes.
-class CommittedScene {
+class CommittedScene : public Object<CommittedScene> {
  public:
   /// Builds over count meshes by rising geometry_id. Throws Error.
   CommittedScene(Device& device, const AttachedMesh* meshes, size_t count,
                  const SceneParameters& parameters);
-  CommittedScene(const CommittedScene&) = delete;
-  CommittedScene& operator=(const CommittedScene&) = delete;
+  static void destroy(CommittedScene* scene) noexcept;
 
+  /// For what only works on it, and is gone before it.
+  Memory& memory() const { return device_->memory(); }
   const SceneView& view() const { return view_; }
   const TraversalKernels& kernels() const { return kernels_; }
-  const Parallel& parallel() const { return *parallel_; }
-  bool validates_arguments() const { return validates_arguments_; }
+  const Parallel& parallel() const { return device_->parallel(); }
+  bool validates_arguments() const { return device_->validates_arguments(); }
   const kiwami_scene_info& info() const { return info_; }
   const WideTree& tree() const { return tree_; }
   TriangleSource source() const {
@@ -61,10 +63,9 @@ class CommittedScene {
   void build(const SceneParameters& parameters);
   void describe();
 
+  Reference<Device> device_;
   // Its own byte count, which gives the exact peak of one build, whatever else the device does.
   mutable Memory memory_;
-  const Parallel* parallel_;
-  bool validates_arguments_;
   TraversalKernels kernels_{};
   MeshReferences references_;
   Array<TriangleMeshView> mesh_views_;

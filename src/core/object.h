@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects on a device's memory: counted references for what handles name, and single owners.
+// Objects on a device's memory, and counted references to them.
 #pragma once
 
 #include <atomic>
@@ -30,8 +30,8 @@ void destroy_object(Memory& memory, T* object) noexcept {
   memory.deallocate(object, sizeof(T), alignof(T));
 }
 
-/// Base of the objects that handles name. Starts with one reference; the last release calls
-/// T::destroy(T*).
+/// Base of the objects that several may hold, as those that handles name. Starts with one
+/// reference; the last release calls T::destroy(T*).
 template <typename T>
 class Object {
  public:
@@ -53,43 +53,35 @@ class Object {
   std::atomic<size_t> references_{1};
 };
 
-/// One counted reference to an object.
+/// One counted reference to an object, or none.
 template <typename T>
 class Reference {
  public:
+  Reference() = default;
   explicit Reference(T& object) : object_(&object) { object_->retain(); }
-  Reference(const Reference& other) : object_(other.object_) { object_->retain(); }
-  Reference& operator=(const Reference&) = delete;
-  ~Reference() { object_->release(); }
+  Reference(const Reference& other) : object_(other.object_) {
+    if (object_) object_->retain();
+  }
+  Reference& operator=(Reference other) noexcept {
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  ~Reference() {
+    if (object_) object_->release();
+  }
 
+  /// Takes over the reference that a new object starts with.
+  static Reference adopt(T* object) {
+    Reference reference;
+    reference.object_ = object;
+    return reference;
+  }
+
+  T* get() const { return object_; }
   T& operator*() const { return *object_; }
   T* operator->() const { return object_; }
 
  private:
-  T* object_;
-};
-
-/// The only owner of an object that make_object made on memory; may own nothing.
-template <typename T>
-class Owned {
- public:
-  Owned() = default;
-  Owned(Memory& memory, T* object) : memory_(&memory), object_(object) {}
-  Owned(Owned&& other) noexcept
-      : memory_(other.memory_), object_(std::exchange(other.object_, nullptr)) {}
-  Owned& operator=(Owned&& other) noexcept {
-    std::swap(memory_, other.memory_);
-    std::swap(object_, other.object_);
-    return *this;
-  }
-  ~Owned() {
-    if (object_) destroy_object(*memory_, object_);
-  }
-
-  T* get() const { return object_; }
-
- private:
-  Memory* memory_ = nullptr;
   T* object_ = nullptr;
 };
 

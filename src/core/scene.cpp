@@ -68,10 +68,9 @@ Array<AttachedMesh> Scene::attached_meshes() const {
 void Scene::commit() {
   Memory& memory = device_->memory();
   const Array<AttachedMesh> attached = attached_meshes();
-  committed_ = Owned<CommittedScene>(
-      memory,
+  committed_ = Reference<CommittedScene>::adopt(
       make_object<CommittedScene>(memory, *device_, attached.data(), attached.size(), parameters_));
-  log_skipped(*device_, committed_.get()->info());
+  log_skipped(*device_, committed_->info());
 }
 
 }  // namespace kiwami

@@ -29,7 +29,7 @@ class Scene : public Object<Scene> {
   /// Throws Error, and then keeps what was committed before.
   void commit();
   /// nullptr before the first commit.
-  const CommittedScene* committed() const { return committed_.get(); }
+  CommittedScene* committed() const { return committed_.get(); }
 
  private:
   Array<AttachedMesh> attached_meshes() const;
@@ -38,7 +38,7 @@ class Scene : public Object<Scene> {
   SceneParameters parameters_;
   GrowingArray<TriangleMesh*> meshes_;  ///< by geometry id; nullptr: free
   uint32_t lowest_free_ = 0;            ///< every lower id is taken
-  Owned<CommittedScene> committed_;
+  Reference<CommittedScene> committed_;
 };
 
 }  // namespace kiwami

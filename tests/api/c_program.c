@@ -60,6 +60,8 @@ static void look_at_the_tree(const kiwami_scene* scene) {
   kiwami_bvh_info info;
   kiwami_bvh_node root;
   kiwami_bvh_primitive primitives[2];
+  kiwami_bvh_measure_desc desc;
+  kiwami_bvh_measures measures;
   EXPECT(kiwami_scene_get_bvh(scene, &bvh) == KIWAMI_OK);
   kiwami_bvh_retain(bvh);
   kiwami_bvh_release(bvh);
@@ -70,6 +72,11 @@ static void look_at_the_tree(const kiwami_scene* scene) {
   EXPECT(root.lower[0] == -1 && root.upper[2] == 5 && root.primitive_count == 2);
   EXPECT(kiwami_bvh_get_primitives(bvh, 0, 2, primitives, 0) == KIWAMI_OK);
   EXPECT(primitives[0].primitive_id + primitives[1].primitive_id == 1);
+  EXPECT(kiwami_bvh_measure_desc_init(&desc, sizeof desc) == KIWAMI_OK);
+  desc.leaf_cost = 2;
+  measures.struct_size = sizeof measures;
+  EXPECT(kiwami_bvh_measure(bvh, &desc, &measures, NULL, 0) == KIWAMI_OK);
+  EXPECT(measures.sah >= 2 && measures.surface_area == 4);
   kiwami_bvh_release(bvh);
 }
 
@@ -103,6 +110,15 @@ static void trace_arrays(const kiwami_scene* scene) {
   EXPECT(hits[1].geometry_id == KIWAMI_INVALID_ID && hits[1].u == 0 && hits[1].normal_z == 0);
   EXPECT(kiwami_any_hit(scene, rays, 0, occluded, 0, 2, NULL) == KIWAMI_OK);
   EXPECT(occluded[0] == 1 && occluded[1] == 0);
+}
+
+static void count_visits(const kiwami_scene* scene) {
+  const kiwami_ray ray = ray_at(0.5f, 0.25f);
+  kiwami_visits visits;
+  visits.struct_size = sizeof visits;
+  EXPECT(kiwami_scene_count_visits(scene, &ray, 0, 1, KIWAMI_COUNT_ANY_HIT, &visits, NULL, 0) ==
+         KIWAMI_OK);
+  EXPECT(visits.ray_count == 1 && visits.hit_count == 1 && visits.leaf_visits >= 1);
 }
 
 static void trace_fields(const kiwami_scene* scene) {
@@ -158,6 +174,7 @@ int main(void) {
   look_at_the_tree(scene);
   trace_arrays(scene);
   trace_fields(scene);
+  count_visits(scene);
   kiwami_scene_release(scene);
   return 0;
 }

@@ -175,6 +175,43 @@ static void check_bvh(void) {
   FIELD(kiwami_bvh_info, bytes, 32);
 }
 
+static void check_measures(void) {
+  SIZE(kiwami_bvh_measure_desc, 32);
+  FIELD(kiwami_bvh_measure_desc, struct_size, 0);
+  FIELD(kiwami_bvh_measure_desc, flags, 4);
+  FIELD(kiwami_bvh_measure_desc, node_cost, 8);
+  FIELD(kiwami_bvh_measure_desc, leaf_cost, 16);
+  FIELD(kiwami_bvh_measure_desc, block_size, 24);
+  FIELD(kiwami_bvh_measure_desc, reserved, 28);
+
+  SIZE(kiwami_bvh_measures, 48);
+  FIELD(kiwami_bvh_measures, struct_size, 0);
+  FIELD(kiwami_bvh_measures, reserved, 4);
+  FIELD(kiwami_bvh_measures, sah, 8);
+  FIELD(kiwami_bvh_measures, epo, 16);
+  FIELD(kiwami_bvh_measures, node_area, 24);
+  FIELD(kiwami_bvh_measures, leaf_area, 32);
+  FIELD(kiwami_bvh_measures, surface_area, 40);
+
+  SIZE(kiwami_bvh_node_measures, 24);
+  FIELD(kiwami_bvh_node_measures, area, 0);
+  FIELD(kiwami_bvh_node_measures, sah, 8);
+  FIELD(kiwami_bvh_node_measures, epo, 16);
+
+  SIZE(kiwami_visits, 48);
+  FIELD(kiwami_visits, struct_size, 0);
+  FIELD(kiwami_visits, reserved, 4);
+  FIELD(kiwami_visits, ray_count, 8);
+  FIELD(kiwami_visits, hit_count, 16);
+  FIELD(kiwami_visits, node_visits, 24);
+  FIELD(kiwami_visits, leaf_visits, 32);
+  FIELD(kiwami_visits, leaf_count_variability, 40);
+
+  SIZE(kiwami_ray_visits, 8);
+  FIELD(kiwami_ray_visits, node_visits, 0);
+  FIELD(kiwami_ray_visits, leaf_visits, 4);
+}
+
 static void check_numbers(void) {
   expect("KIWAMI_ERROR_INVALID_ARGUMENT", (size_t)-KIWAMI_ERROR_INVALID_ARGUMENT, 1);
   expect("KIWAMI_ERROR_INVALID_STATE", (size_t)-KIWAMI_ERROR_INVALID_STATE, 2);
@@ -205,6 +242,7 @@ int main(void) {
   }
   check_infos_and_query();
   check_bvh();
+  check_measures();
   check_numbers();
   return failures != 0;
 }
