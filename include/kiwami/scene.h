@@ -42,7 +42,8 @@ enum {
 enum {
   KIWAMI_BUILDER_BINNED_SAH = 0, /* top-down by the surface area heuristic over bins */
   KIWAMI_BUILDER_LBVH = 1,       /* along a Morton curve, by the cells that codes share */
-  KIWAMI_BUILDER_PLOC = 2        /* along a Morton curve, nearest neighbours join */
+  KIWAMI_BUILDER_PLOC = 2,       /* along a Morton curve, nearest neighbours join */
+  KIWAMI_BUILDER_SWEEP_SAH = 3   /* top-down by the surface area heuristic over all positions */
 };
 enum {
   KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1, /* subtrees move to where the area shrinks most */

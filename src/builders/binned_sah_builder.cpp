@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "builders/joined_nodes.h"
 #include "builders/sah_split.h"
 
 namespace kiwami {
@@ -98,7 +99,7 @@ class SubtreeBuilder {
   }
 
   void make_leaf(uint32_t begin, uint32_t end, int side, BinaryNode& node) {
-    node.first = open_.begin + begin;
+    node.first = begin;
     node.count = end - begin;
     for (uint32_t i = begin; i < end; ++i) ids_[i] = buffers_[side][i].id;
   }
@@ -134,9 +135,6 @@ struct LevelNode {
 struct Subtree {
   OpenNode open;
   int side;
-  uint32_t node_count;
-  uint32_t first_node;
-  BinaryNode* nodes;  ///< owned by the build
 };
 
 /// One build. The nodes near the root are split level by level, each step parallel over the blocks
@@ -152,31 +150,23 @@ class Build {
         memory_(memory),
         parallel_(parallel),
         count_(static_cast<uint32_t>(primitives_.size())),
-        // Enough blocks and subtrees to keep many threads busy, of a size worth starting a task.
+        // Enough blocks to keep many threads busy, of a size worth starting a task.
         block_size_(std::max(4096u, count_ / 1024)),
-        subtree_size_(config.subtree_size ? config.subtree_size
-                                          : std::clamp(count_ / 256, 4096u, 32768u)),
+        subtree_size_(config.subtree_size_of(count_)),
         order_{Array<uint32_t>(memory, count_), Array<uint32_t>(memory, count_)},
-        top_nodes_(memory),
-        subtrees_(memory) {
-    subtree_size_ = std::max(subtree_size_, config.max_leaf_size);
-  }
-  ~Build() {
-    for (Subtree& subtree : subtree_list_) free_nodes(subtree);
-  }
-  Build(const Build&) = delete;
-  Build& operator=(const Build&) = delete;
+        nodes_(memory, parallel),
+        subtrees_(memory) {}
 
   BinaryBvh run() {
-    const OpenNode root = {bounds_of_all(), 0, count_, 1, 0};
-    top_nodes_.push_back(BinaryNode{});
+    const OpenNode root = {bounds_of_all(), 0, count_, 1, nodes_.add_top()};
     GrowingArray<LevelNode> level(memory_);
     add_open_node(root, 0, level);
     for (int side = 0; !level.empty(); side = 1 - side) level = split_level(level, side);
     build_subtrees();
     primitives_ = Array<BuildPrimitive>();
     order_[1] = Array<uint32_t>();
-    return {join_nodes(), std::move(order_[0])};
+    return {nodes_.join([this](size_t i) { return subtree_list_[i].open.begin; }),
+            std::move(order_[0])};
   }
 
  private:
@@ -202,7 +192,7 @@ class Build {
   /// Files a node whose primitives order_[side] names: as a subtree, or to be split next.
   void add_open_node(const OpenNode& open, int side, GrowingArray<LevelNode>& level) {
     if (open.count() <= subtree_size_) {
-      subtrees_.push_back({open, side, 0, 0, nullptr});
+      subtrees_.push_back({open, side});
     } else {
       level.push_back({open, BinMapping(), SplitDecision(), 0, 0});
     }
@@ -315,15 +305,15 @@ class Build {
   void add_children(const LevelNode& parent, const Array<Block>& blocks, int side,
                     GrowingArray<LevelNode>& next) {
     const OpenNode& open = parent.open;
-    const uint32_t first = static_cast<uint32_t>(top_nodes_.size());
-    top_nodes_[open.node] = {open.bounds.geometry.bounds(), first, 0};
+    const uint32_t first = nodes_.add_top();
+    nodes_.add_top();
+    nodes_.top(open.node) = {open.bounds.geometry.bounds(), first, 0};
     const uint32_t edges[3] = {open.begin, open.begin + parent.decision.left_count, open.end};
     for (uint32_t child = 0; child < 2; ++child) {
       RangeBounds bounds = RangeBounds::empty();
       for (uint32_t i = parent.first_block; i < parent.block_end; ++i) {
         bounds.extend(blocks[i].child[child]);
       }
-      top_nodes_.push_back(BinaryNode{});
       add_open_node({bounds, edges[child], edges[child + 1], open.depth + 1, first + child}, side,
                     next);
     }
@@ -339,52 +329,16 @@ class Build {
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
       return subtree_list_[a].open.count() > subtree_list_[b].open.count();
     });
+    nodes_.set_subtree_count(order.size());
     parallel_.for_each(order.size(), [&](size_t i) {
-      Subtree& subtree = subtree_list_[order[i]];
+      const Subtree& subtree = subtree_list_[order[i]];
       const OpenNode& open = subtree.open;
       SubtreeBuilder builder(config_, open, memory_);
       builder.build(primitives_.data(), order_[subtree.side].data() + open.begin,
-                    order_[0].data() + open.begin, top_nodes_[open.node]);
-      keep_nodes(builder, subtree);
+                    order_[0].data() + open.begin, nodes_.top(open.node));
+      nodes_.keep(order[i], open.node, builder.nodes(), builder.node_count());
     });
   }
-
-  void keep_nodes(const SubtreeBuilder& builder, Subtree& subtree) {
-    const size_t bytes = builder.node_count() * sizeof(BinaryNode);
-    subtree.nodes = static_cast<BinaryNode*>(memory_.allocate(bytes, kNodeAlignment));
-    subtree.node_count = builder.node_count();
-    std::copy_n(builder.nodes(), subtree.node_count, subtree.nodes);
-  }
-
-  void free_nodes(Subtree& subtree) {
-    memory_.deallocate(subtree.nodes, subtree.node_count * sizeof(BinaryNode), kNodeAlignment);
-    subtree.nodes = nullptr;
-  }
-
-  /// All nodes in one array without gaps: those near the root, then subtree by subtree.
-  Array<BinaryNode> join_nodes() {
-    uint32_t total = static_cast<uint32_t>(top_nodes_.size());
-    for (Subtree& subtree : subtree_list_) {
-      subtree.first_node = total;
-      total += subtree.node_count;
-    }
-    Array<BinaryNode> nodes(memory_, total);
-    for (size_t i = 0; i < top_nodes_.size(); ++i) nodes[i] = top_nodes_[i];
-    parallel_.for_each(subtree_list_.size(), [&](size_t i) {
-      Subtree& subtree = subtree_list_[i];
-      BinaryNode& root = nodes[subtree.open.node];
-      if (!root.is_leaf()) root.first += subtree.first_node;
-      for (uint32_t k = 0; k < subtree.node_count; ++k) {
-        BinaryNode node = subtree.nodes[k];
-        if (!node.is_leaf()) node.first += subtree.first_node;
-        nodes[subtree.first_node + k] = node;
-      }
-      free_nodes(subtree);
-    });
-    return nodes;
-  }
-
-  static constexpr size_t kNodeAlignment = 64;
 
   Array<BuildPrimitive> primitives_;
   const Config& config_;
@@ -394,7 +348,7 @@ class Build {
   uint32_t block_size_;
   uint32_t subtree_size_;
   Array<uint32_t> order_[2];  ///< of the primitives; in the end the first one holds their ids
-  GrowingArray<BinaryNode> top_nodes_;
+  JoinedNodes nodes_;
   GrowingArray<Subtree> subtrees_;
   Array<Subtree> subtree_list_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builders/sah_config.h"
 #include "bvh/binary_bvh.h"
 #include "core/memory.h"
 #include "parallel/parallel.h"
@@ -13,20 +14,9 @@ namespace kiwami {
 /// depend on the number of threads: near the root by primitives, below by subtrees.
 class BinnedSahBuilder {
  public:
-  struct Config {
+  struct Config : SahConfig {
     /// Bins per axis, 2 to 32; nodes of few primitives use fewer (see bins_of).
     uint32_t bin_count = 16;
-    /// No leaf owns more primitives.
-    uint32_t max_leaf_size = 8;
-    /// Primitives that one leaf test takes at once: the cost of a leaf counts such blocks.
-    uint32_t block_size = 8;
-    /// Cost of visiting a node.
-    float node_cost = 1.0f;
-    /// Cost of testing one block.
-    float leaf_cost = 1.0f;
-    /// Subtrees of at most this many primitives are built by one thread; 0: chosen by the number
-    /// of primitives. The shape of the tree does not depend on it.
-    uint32_t subtree_size = 0;
   };
 
   /// The bins per axis that a node of so many primitives uses: more than its primitives would only

@@ -4,8 +4,8 @@
 
 #include <bit>
 
-#include "builders/binned_sah_builder.h"
 #include "builders/sah_bins.h"
+#include "builders/sah_config.h"
 
 namespace kiwami {
 
@@ -76,8 +76,8 @@ inline uint32_t halving_levels(uint32_t count) {
 }
 
 /// The decision for nodes that need no bins; false: fill the bins and ask decide_by_bins.
-inline bool decide_without_bins(uint32_t count, uint32_t depth,
-                                const BinnedSahBuilder::Config& config, SplitDecision& decision) {
+inline bool decide_without_bins(uint32_t count, uint32_t depth, const SahConfig& config,
+                                SplitDecision& decision) {
   const bool can_be_leaf = count <= config.max_leaf_size;
   const bool no_split_pays =
       blocks_of(count, config.block_size) * config.leaf_cost <= config.node_cost;
@@ -101,7 +101,7 @@ inline bool decide_without_bins(uint32_t count, uint32_t depth,
 /// Split or leaf by the surface area heuristic with costs in blocks.
 inline SplitDecision decide_by_bins(const SahBins& bins, const BinMapping& mapping,
                                     const RangeBounds& bounds, uint32_t count,
-                                    const BinnedSahBuilder::Config& config) {
+                                    const SahConfig& config) {
   const double area = bounds.geometry.half_area();
   BestPlane best;
   for (int axis = 0; axis < 3; ++axis) {

@@ -6,6 +6,7 @@
 #include "builders/binned_sah_builder.h"
 #include "builders/lbvh_builder.h"
 #include "builders/ploc_builder.h"
+#include "builders/sweep_sah_builder.h"
 #include "bvh/tree_edit.h"
 #include "optimizers/reinsertion.h"
 #include "optimizers/rotation.h"
@@ -22,6 +23,7 @@ constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_BINNED_SAH, "binned_sah"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_LBVH, "lbvh"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_PLOC, "ploc"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_SWEEP_SAH, "sweep_sah"},
     {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_PARALLEL_REINSERTION, "parallel_reinsertion"},
     {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_ROTATION, "rotation"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
@@ -33,15 +35,23 @@ SahCosts costs_of(const SceneParameters& parameters, uint32_t width) {
           static_cast<float>(parameters[KIWAMI_PARAMETER_LEAF_COST]), width};
 }
 
-BinnedSahBuilder::Config binned_sah_config(const SceneParameters& parameters, uint32_t width) {
+SahConfig sah_config(const SceneParameters& parameters, uint32_t width) {
   const SahCosts costs = costs_of(parameters, width);
-  BinnedSahBuilder::Config config;
-  config.bin_count = parameters.whole(KIWAMI_PARAMETER_BIN_COUNT);
+  SahConfig config;
   config.max_leaf_size = binary_leaf_size_of(parameters, width);
   config.block_size = width;
   config.node_cost = costs.node_cost;
   config.leaf_cost = costs.leaf_cost;
   return config;
+}
+
+BinnedSahBuilder::Config binned_sah_config(const SceneParameters& parameters, uint32_t width) {
+  return {sah_config(parameters, width), parameters.whole(KIWAMI_PARAMETER_BIN_COUNT)};
+}
+
+/// Whether a builder makes leaves of several primitives where that is cheaper.
+bool makes_leaves(uint32_t builder) {
+  return builder == KIWAMI_BUILDER_BINNED_SAH || builder == KIWAMI_BUILDER_SWEEP_SAH;
 }
 
 /// One call of the chosen builder.
@@ -52,6 +62,9 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const SceneParameters& p
       return LbvhBuilder::build(std::move(primitives), {}, memory, parallel);
     case KIWAMI_BUILDER_PLOC:
       return PlocBuilder::build(std::move(primitives), {}, memory, parallel);
+    case KIWAMI_BUILDER_SWEEP_SAH:
+      return SweepSahBuilder::build(std::move(primitives), sah_config(parameters, width), memory,
+                                    parallel);
     default:
       return BinnedSahBuilder::build(std::move(primitives), binned_sah_config(parameters, width),
                                      memory, parallel);
@@ -106,7 +119,7 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
     run_optimizer(method, bvh, memory, parallel);
   }
   // Builders that know nothing of blocks leave one primitive a leaf.
-  if (parameters.whole(KIWAMI_PARAMETER_BUILDER) != KIWAMI_BUILDER_BINNED_SAH) {
+  if (!makes_leaves(parameters.whole(KIWAMI_PARAMETER_BUILDER))) {
     collapse_leaves(bvh, binary_leaf_size_of(parameters, width), costs, memory);
   }
   return bvh;
