@@ -160,6 +160,48 @@ TEST(Bench, ParametersChangeTheTreeAndNotTheAnswers) {
   EXPECT_EQ(usual.at(1).at("hits_hash"), changed.at(1).at("hits_hash"));
 }
 
+TEST(Bench, MakesATableOfPipelines) {
+  const Json rows = bench_rows({"soup:3000:1", "sphere:2", "--pipelines", "all", "--threads", "1"});
+  std::map<std::string, std::set<std::string>> pipelines;
+  std::map<std::string, std::set<std::string>> hashes;
+  std::set<double> costs;
+  for (const Json& row : rows) {
+    const std::string scene = row.at("scene");
+    EXPECT_TRUE(pipelines[scene].insert(row.at("pipeline")).second) << row;
+    expect_positive(row, {"triangles", "width", "build_ms_1", "mtris_per_second_1",
+                          "bytes_per_triangle", "peak_bytes_per_triangle", "sah",
+                          "bounce_shuffled_mrays", "bounce_shuffled_ratio", "ao_mrays"});
+    EXPECT_FALSE(row.contains("wrong")) << row;
+    for (const std::string rays : {"bounce_shuffled", "ao"}) {
+      hashes[scene + rays].insert(row.at(rays + "_hits_hash"));
+    }
+    if (scene == "soup:3000:1") costs.insert(row.at("sah").get<double>());
+  }
+  ASSERT_EQ(pipelines.size(), 2u);
+  EXPECT_EQ(pipelines["soup:3000:1"], pipelines["sphere:2"]);
+  for (const char* name : {"binned_sah, optimal, merged", "binned_sah, surface_area, merged",
+                           "lbvh + rotation, optimal, merged"}) {
+    EXPECT_EQ(pipelines["sphere:2"].count(name), 1u) << name;
+  }
+  for (const auto& [rays, of_rays] : hashes) EXPECT_EQ(of_rays.size(), 1u) << rays;
+  EXPECT_GE(costs.size(), 8u);
+}
+
+TEST(Bench, APipelineTableIsOfTheBuildersNamed) {
+  const Json rows = bench_rows({"sphere:2", "--pipelines", "lbvh,ploc", "--threads", "1",
+                                "--builder", "lbvh", "--rays", "random", "--bvh-width", "4"});
+  size_t of_lbvh = 0;
+  for (const Json& row : rows) {
+    const std::string name = row.at("pipeline");
+    EXPECT_TRUE(name.starts_with("lbvh") || name.starts_with("ploc")) << name;
+    of_lbvh += name.starts_with("lbvh") ? 1 : 0;
+    EXPECT_EQ(row.at("width"), 4);
+    expect_positive(row, {"random_mrays"});
+  }
+  // The contractions are tried on --builder alone.
+  EXPECT_GT(of_lbvh, rows.size() - of_lbvh);
+}
+
 TEST(Bench, TheCameraDecidesThePrimaryRays) {
   const auto hash = [](const std::vector<std::string>& view) {
     std::vector<std::string> arguments = {"terrain:20", "--rays", "primary", "--threads", "1",
@@ -206,6 +248,8 @@ TEST(Bench, WrongArgumentsAreRefusedInOneSentence) {
       {{"sphere:1", "--param", "=3"}, "parameter"},
       {{"sphere:1", "--param", "900=3"}, "900"},
       {{"sphere:1", "--list", "best"}, "best"},
+      {{"sphere:1", "--pipelines", "bsp"}, "there is no builder 'bsp'"},
+      {{"sphere:1", "--pipelines", "lbvh,lbvh"}, "--pipelines"},
       {{"--list", folder / ""}, "expected tuning, judging or a text file"},
       {{"--list", folder.write("empty.txt", "# nothing\n")}, "names no scene"},
       {{"--list", "judging", "--scenes-folder", folder / "none"}, "there is no file"},

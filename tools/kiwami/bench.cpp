@@ -3,86 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <memory>
 
 #include "kiwami/known_scenes.h"
 #include "kiwami/options.h"
+#include "kiwami/own_run.h"
 #include "measure/baselines/baseline_peer.h"
 #include "measure/bench_rays.h"
 #include "measure/contest.h"
 #include "measure/embree_contender.h"
-#include "measure/parallel_blocks.h"
 
 namespace kiwami::tools {
 namespace {
 
-constexpr uint32_t kMostBuilds = 3;
-constexpr size_t kRaysPerBlock = 4096;
 // An entrance of a peer that is so much slower than its best one in the warming-up is left out.
 constexpr double kHopeless = 1.6;
 // Peers are not watertight, and of triangles at the same place either may be met.
 constexpr double kMostDisagreements = 0.01;
-
-double per_triangle(uint64_t bytes, uint64_t triangles) {
-  return static_cast<double>(bytes) / static_cast<double>(std::max<uint64_t>(triangles, 1));
-}
-
-/// Our side of a contest.
-class OwnRun {
- public:
-  OwnRun(const BuiltScene& scene, const BenchRays& rays, BenchApi api, uint32_t threads)
-      : scene_(scene), rays_(rays), api_(api), threads_(threads) {
-    hits_.resize(rays.any_hit ? 0 : rays.set.rays.size());
-    occluded_.resize(rays.any_hit ? rays.set.rays.size() : 0);
-  }
-
-  /// Forgets the answers, so that those of the last round cannot pass for new ones.
-  void reset() {
-    if (!hits_.empty()) std::memset(hits_.data(), 0xCD, hits_.size() * sizeof hits_[0]);
-    std::fill(occluded_.begin(), occluded_.end(), uint8_t{0xCD});
-  }
-
-  void trace() {
-    const std::span<const kiwami_ray> rays = rays_.set.rays;
-    if (api_ == BenchApi::kBatch) {
-      if (rays_.any_hit) {
-        scene_.any_hits(rays, occluded_);
-      } else {
-        scene_.closest_hits(rays, hits_);
-      }
-      return;
-    }
-    parallel_blocks(threads_, rays.size(), kRaysPerBlock, [&](size_t first, size_t last) {
-      const auto block = rays.subspan(first, last - first);
-      if (rays_.any_hit) {
-        scene_.any_hits_singly(block, std::span(occluded_).subspan(first, block.size()));
-      } else {
-        scene_.closest_hits_singly(block, std::span(hits_).subspan(first, block.size()));
-      }
-    });
-  }
-
-  uint64_t hash() const {
-    return rays_.any_hit ? hash_bytes(std::as_bytes(std::span(occluded_))) : hash_hits(hits_);
-  }
-
-  /// As PeerRun::distance.
-  float distance(size_t i) const {
-    if (!rays_.any_hit) return hits_[i].t;
-    return occluded_[i] != 0 ? 0.0f : std::numeric_limits<float>::infinity();
-  }
-
- private:
-  const BuiltScene& scene_;
-  const BenchRays& rays_;
-  BenchApi api_;
-  uint32_t threads_;
-  std::vector<kiwami_hit> hits_;
-  std::vector<uint8_t> occluded_;
-};
 
 /// One entrance of a peer that takes part in a contest.
 struct PeerSide {
@@ -162,11 +101,7 @@ class SceneBench {
 
 void SceneBench::run_device(uint32_t isa, uint32_t threads) {
   const Device device(isa, threads);
-  if (device.info().thread_count != threads) {
-    throw UsageError("--threads is " + std::to_string(threads) +
-                     ", but this machine has processors for " +
-                     std::to_string(device.info().thread_count));
-  }
+  check_threads(device, threads);
   std::unique_ptr<BuiltScene> scene;
   std::unique_ptr<PeerScene> peer;
   const BuildRow build = measure_builds(device, scene, peer);

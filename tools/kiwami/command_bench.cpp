@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "kiwami/bench.h"
+#include "kiwami/bench_pipelines.h"
 #include "kiwami/bench_report.h"
 #include "kiwami/commands.h"
 #include "kiwami/image.h"
@@ -20,6 +21,8 @@ namespace {
 
 constexpr int kWrongAnswer = 1;
 constexpr uint32_t kMostThreads = 1024;
+constexpr char kAllRays[] = "primary,bounce,bounce_shuffled,ao,shadow,random";
+constexpr char kPipelineRays[] = "bounce_shuffled,ao";
 
 struct BenchOptions {
   std::vector<std::string> scenes;
@@ -27,12 +30,13 @@ struct BenchOptions {
   std::string scenes_folder = ".";
   std::string peer = *embree_version() != '\0' ? "embree" : "none";
   bool robust = false;
-  std::string rays = "primary,bounce,bounce_shuffled,ao,shadow,random";
+  std::string rays;  ///< "": kAllRays, or kPipelineRays in a table of pipelines
   std::string threads = std::thread::hardware_concurrency() > 1 ? "1,2" : "1";
   std::string apis = "single,batch";
   std::string isas = "auto";
   uint32_t bvh_width = 0;
   PipelineOptions pipeline;
+  std::string pipelines;
   uint32_t rounds = 5;
   uint64_t ray_count = 1u << 20;
   std::vector<std::string> parameters;
@@ -96,7 +100,8 @@ std::vector<BenchApi> parse_apis(const std::string& text) {
 
 BenchSettings make_settings(const BenchOptions& options) {
   BenchSettings settings;
-  settings.rays = parse_rays(options.rays);
+  const char* usual_rays = options.pipelines.empty() ? kAllRays : kPipelineRays;
+  settings.rays = parse_rays(options.rays.empty() ? usual_rays : options.rays);
   settings.threads = parse_threads(options.threads);
   settings.apis = parse_apis(options.apis);
   for (const std::string& isa : split("--isa", options.isas)) {
@@ -134,10 +139,31 @@ std::vector<std::string> choose_scenes(const BenchOptions& options) {
   return scenes;
 }
 
+/// The table of pipelines.
+int run_table(const BenchOptions& options, const BenchSettings& settings,
+              const std::vector<std::string>& scenes) {
+  const std::vector<BuildOptions> pipelines =
+      choose_pipelines(split("--pipelines", options.pipelines), settings.build);
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  bool all_right = true;
+  for (const std::string& scene : scenes) {
+    bool is_first = true;
+    run_pipelines(scene, pipelines, settings, [&](const PipelineRow& row) {
+      print_row(row, is_first);
+      is_first = false;
+      rows.push_back(to_json(row));
+      all_right = all_right && row.wrong.empty();
+    });
+    if (!options.json.empty()) write_file(options.json, rows.dump(1) + "\n");
+  }
+  return all_right ? 0 : kWrongAnswer;
+}
+
 int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   const std::vector<std::string> scenes = choose_scenes(options);
   if (!options.json.empty()) check_writable("--json", options.json);
+  if (!options.pipelines.empty()) return run_table(options, settings, scenes);
   const std::string peer = peer_name(settings);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   RatioSummary summary;
@@ -200,8 +226,9 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
       ->check(one_of({"embree", "binary", "none"}))
       ->capture_default_str();
   command.add_flag("--robust", options.robust, "Embree with its robust scene flag");
-  command.add_option("--rays", options.rays, "Which ray sets, between commas")
-      ->capture_default_str();
+  command.add_option("--rays", options.rays,
+                     std::string("Which ray sets, between commas: by default ") + kAllRays +
+                         "; with --pipelines " + kPipelineRays);
   command.add_option("--threads", options.threads, "Numbers of threads, between commas")
       ->capture_default_str();
   command
@@ -216,6 +243,9 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
       ->check(one_of({"0", "4", "8", "16"}))
       ->capture_default_str();
   add_pipeline_options(command, options.pipeline);
+  command.add_option("--pipelines", options.pipelines,
+                     "A table of pipelines in place of a peer: these builders between commas, or "
+                     "all, each alone and with each optimiser");
   command.add_option("--rounds", options.rounds, "Runs of each side; their medians count")
       ->check(whole_number(1, 1000))
       ->capture_default_str();
