@@ -67,11 +67,12 @@ TEST(Bench, WritesARowForEachBuildAndEachCase) {
     expect_positive(row, {"width"});
     EXPECT_FALSE(row.contains("peer")) << row;
     if (row.contains("build_ms")) {
-      expect_positive(row, {"build_ms", "bytes_per_triangle", "peak_bytes_per_triangle", "sah"});
+      expect_positive(row,
+                      {"build_ms", "bytes_per_triangle", "peak_bytes_per_triangle", "sah", "epo"});
       EXPECT_GE(row.at("peak_bytes_per_triangle"), row.at("bytes_per_triangle"));
       continue;
     }
-    expect_positive(row, {"mrays"});
+    expect_positive(row, {"mrays", "node_visits", "leaf_visits", "leaf_count_variability"});
     EXPECT_EQ(row.at("hits_hash").get<std::string>().size(), 16u);
     const std::string rays = row.at("rays");
     EXPECT_EQ(row.at("any_hit"), rays == "ao" || rays == "shadow");

@@ -68,6 +68,13 @@ uint64_t count_disagreements(const OwnRun& own, const PeerRun& peer, size_t coun
   return disagreements;
 }
 
+RayVisits visits_of(const BuiltScene& scene, const BenchRays& rays) {
+  const kiwami_visits visits = scene.visits(rays.set.rays, rays.any_hit);
+  const auto count = static_cast<double>(std::max<uint64_t>(visits.ray_count, 1));
+  return {static_cast<double>(visits.node_visits) / count,
+          static_cast<double>(visits.leaf_visits) / count, visits.leaf_count_variability};
+}
+
 /// Everything about one scene.
 class SceneBench {
  public:
@@ -87,6 +94,7 @@ class SceneBench {
   std::unique_ptr<PeerScene> build_peer(const Device& device) const;
   TraceRow measure_traces(const BuiltScene& scene, const PeerScene* peer, const BenchRays& rays,
                           BenchApi api, const BenchCase& of);
+  double overlap_of(const BuiltScene& scene);
   void check_hash(TraceRow& row, uint64_t hash);
   void make_rays(const BuiltScene& scene);
 
@@ -97,6 +105,7 @@ class SceneBench {
   std::vector<BenchRays> rays_;
   float least_distance_ = 0.0f;
   std::map<std::string, uint64_t> hashes_;  ///< the first answers to each ray set
+  std::map<uint32_t, double> overlaps_;     ///< by width: the tree is the same on every device
 };
 
 void SceneBench::run_device(uint32_t isa, uint32_t threads) {
@@ -104,14 +113,25 @@ void SceneBench::run_device(uint32_t isa, uint32_t threads) {
   check_threads(device, threads);
   std::unique_ptr<BuiltScene> scene;
   std::unique_ptr<PeerScene> peer;
-  const BuildRow build = measure_builds(device, scene, peer);
+  BuildRow build = measure_builds(device, scene, peer);
+  build.epo = overlap_of(*scene);
   if (rays_.empty()) make_rays(*scene);
   listener_.on_build(build);
+  std::vector<RayVisits> visits;
+  for (const BenchRays& rays : rays_) visits.push_back(visits_of(*scene, rays));
   for (const BenchApi api : settings_.apis) {
-    for (const BenchRays& rays : rays_) {
-      listener_.on_trace(measure_traces(*scene, peer.get(), rays, api, build.of));
+    for (size_t i = 0; i < rays_.size(); ++i) {
+      TraceRow row = measure_traces(*scene, peer.get(), rays_[i], api, build.of);
+      row.visits = visits[i];
+      listener_.on_trace(row);
     }
   }
+}
+
+double SceneBench::overlap_of(const BuiltScene& scene) {
+  const auto [found, is_new] = overlaps_.try_emplace(scene.info().bvh_width, 0.0);
+  if (is_new) found->second = scene.measures().epo;
+  return found->second;
 }
 
 void SceneBench::make_rays(const BuiltScene& scene) {
@@ -172,7 +192,7 @@ TraceRow SceneBench::measure_traces(const BuiltScene& scene, const PeerScene* pe
                                     const BenchRays& rays, BenchApi api, const BenchCase& of) {
   const size_t count = rays.set.rays.size();
   const double millions = static_cast<double>(count) * 1e-6;
-  TraceRow row{of, rays.set.name, rays.any_hit, api, 0.0, std::nullopt, 0, ""};
+  TraceRow row{of, rays.set.name, rays.any_hit, api, 0.0, std::nullopt, {}, 0, ""};
   OwnRun own(scene, rays, api, of.threads);
   own.reset();
   own.trace();

@@ -53,6 +53,13 @@ struct PeerTrace {
   uint64_t disagreements;  ///< rays that miss here and hit there, or hit at another distance
 };
 
+/// What a ray visits on average, traced alone.
+struct RayVisits {
+  double nodes;
+  double leaves;
+  double leaf_count_variability;  ///< the standard deviation of the leaves
+};
+
 struct TraceRow {
   BenchCase of;
   std::string rays;
@@ -60,6 +67,7 @@ struct TraceRow {
   BenchApi api;
   double mrays;  ///< million rays a second, the median of the rounds
   std::optional<PeerTrace> peer;
+  RayVisits visits;
   uint64_t hits_hash;
   std::string wrong;  ///< what is wrong with the answers, or ""
 };
@@ -77,6 +85,7 @@ struct BuildRow {
   double bytes_per_triangle;
   double peak_bytes_per_triangle;
   double sah;
+  double epo = 0.0;  ///< end-point overlap
 };
 
 /// Told of everything as soon as it is known.

@@ -32,6 +32,7 @@ nlohmann::ordered_json to_json(const BuildRow& row, const std::string& peer) {
   json["bytes_per_triangle"] = row.bytes_per_triangle;
   json["peak_bytes_per_triangle"] = row.peak_bytes_per_triangle;
   json["sah"] = row.sah;
+  json["epo"] = row.epo;
   if (row.peer) {
     json["build_ratio"] = row.peer->ratio;
     json["peer_bytes_per_triangle"] = row.peer->bytes_per_triangle;
@@ -54,6 +55,9 @@ nlohmann::ordered_json to_json(const TraceRow& row, const std::string& peer) {
   }
   json["hits_hash"] = format("%016llx", static_cast<unsigned long long>(row.hits_hash));
   json["any_hit"] = row.any_hit;
+  json["node_visits"] = row.visits.nodes;
+  json["leaf_visits"] = row.visits.leaves;
+  json["leaf_count_variability"] = row.visits.leaf_count_variability;
   if (row.peer) {
     json["peer_entrance"] = row.peer->entrance;
     json["peer_disagreements"] = row.peer->disagreements;
@@ -72,11 +76,13 @@ void print_row(const BuildRow& row, const std::string& peer) {
   std::printf("; %.1f bytes per triangle, %.1f at the peak", row.bytes_per_triangle,
               row.peak_bytes_per_triangle);
   if (row.peer) std::printf(" (%s %.1f)", peer.c_str(), row.peer->bytes_per_triangle);
-  std::printf("; SAH %.2f\n", row.sah);
+  std::printf("; SAH %.2f, EPO %.2f\n", row.sah, row.epo);
 }
 
 void print_row(const TraceRow& row) {
-  std::printf("  %-6s %-15s %8.3f Mrays/s", bench_api_name(row.api), row.rays.c_str(), row.mrays);
+  std::printf("  %-6s %-15s %8.3f Mrays/s  visits %5.1f nodes %5.2f leaves (+-%5.2f)",
+              bench_api_name(row.api), row.rays.c_str(), row.mrays, row.visits.nodes,
+              row.visits.leaves, row.visits.leaf_count_variability);
   if (row.peer) {
     std::printf("  ratio %5.2f to %8.3f of %s", row.peer->ratio, row.peer->mrays,
                 row.peer->entrance.c_str());

@@ -126,6 +126,8 @@ void BuiltScene::set_parameters(kiwami_device* device, const BuildOptions& optio
         device);
   for (const Parameter& parameter : options.parameters) {
     check(kiwami_scene_set_parameter(scene_, parameter.number, parameter.value), device);
+    if (parameter.number == KIWAMI_PARAMETER_NODE_COST) node_cost_ = parameter.value;
+    if (parameter.number == KIWAMI_PARAMETER_LEAF_COST) leaf_cost_ = parameter.value;
   }
 }
 
@@ -169,6 +171,31 @@ void BuiltScene::any_hits_singly(std::span<const kiwami_ray> rays,
   for (size_t i = 0; i < rays.size(); ++i) {
     check(kiwami_any_hit(scene_, &rays[i], 0, &occluded[i], 0, 1, &query), nullptr);
   }
+}
+
+kiwami_bvh_measures BuiltScene::measures() const {
+  kiwami_bvh_measure_desc desc;
+  check(kiwami_bvh_measure_desc_init(&desc, sizeof desc), nullptr);
+  desc.node_cost = node_cost_;
+  desc.leaf_cost = leaf_cost_;
+  kiwami_bvh* bvh = nullptr;
+  check(kiwami_scene_get_bvh(scene_, &bvh), nullptr);
+  kiwami_bvh_measures measures{};
+  measures.struct_size = sizeof measures;
+  const kiwami_result result = kiwami_bvh_measure(bvh, &desc, &measures, nullptr, 0);
+  kiwami_bvh_release(bvh);
+  check(result, nullptr);
+  return measures;
+}
+
+kiwami_visits BuiltScene::visits(std::span<const kiwami_ray> rays, bool any_hit) const {
+  kiwami_visits visits{};
+  visits.struct_size = sizeof visits;
+  check(kiwami_scene_count_visits(scene_, rays.data(), 0, rays.size(),
+                                  any_hit ? KIWAMI_COUNT_ANY_HIT : KIWAMI_COUNT_CLOSEST_HIT,
+                                  &visits, nullptr, 0),
+        nullptr);
+  return visits;
 }
 
 std::vector<std::string> method_names(uint32_t stage) {

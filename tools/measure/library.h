@@ -86,6 +86,10 @@ class BuiltScene : public Tracer {
   /// The same with one call a ray, each on the calling thread.
   void closest_hits_singly(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const;
   void any_hits_singly(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
+  /// What the tree costs by the costs that it was built with.
+  kiwami_bvh_measures measures() const;
+  /// What the rays visit, each traced alone.
+  kiwami_visits visits(std::span<const kiwami_ray> rays, bool any_hit) const;
 
  private:
   void set_parameters(kiwami_device* device, const BuildOptions& options);
@@ -94,6 +98,8 @@ class BuiltScene : public Tracer {
 
   kiwami_scene* scene_ = nullptr;
   kiwami_scene_info info_{};
+  double node_cost_ = 1.0;
+  double leaf_cost_ = 1.0;
 };
 
 /// The KIWAMI_ISA_* that can run here, from scalar to the best.
