@@ -56,6 +56,7 @@ inline vdouble4 load_widened(const float* from) {
   return {simde_mm256_cvtps_pd(simde_mm_loadu_ps(from))};
 }
 inline vdouble4 broadcast_double(double value) { return {simde_mm256_set1_pd(value)}; }
+inline void store(double* to, vdouble4 a) { simde_mm256_storeu_pd(to, a.value); }
 inline void store_rounded(float* to, vdouble4 a) {
   simde_mm_storeu_ps(to, simde_mm256_cvtpd_ps(a.value));
 }

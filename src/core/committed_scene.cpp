@@ -159,8 +159,8 @@ void CommittedScene::describe() {
   info_.skipped_count = numbered_count_ - triangle_count_;
   info_.node_count = tree_.node_count;
   info_.leaf_block_count = tree_.leaf_block_count;
-  info_.node_bytes = tree_.nodes.bytes();
-  info_.leaf_bytes = tree_.leaves.bytes();
+  info_.node_bytes = tree_.node_bytes();
+  info_.leaf_bytes = tree_.leaf_bytes();
   info_.total_bytes = memory_.bytes_in_use() + references_.copied_bytes() + sizeof(*this);
   info_.peak_build_bytes = memory_.peak_bytes() + references_.copied_bytes() + sizeof(*this);
   info_.node_fill = ratio(tree_.used_slots, tree_.node_count * tree_.width);

@@ -11,18 +11,20 @@ namespace kiwami {
 
 namespace {
 
-/// Batches below this stay on the calling thread: waking others costs as much as tracing them.
-constexpr size_t kParallelCount = 4096;
 /// Rays that one task traces.
 constexpr size_t kBlockSize = 1024;
 /// Rays that are gathered at once, on the stack: enough for kernels that trace rays together.
 constexpr size_t kChunkSize = 256;
 
+inline bool is_alone(const Parallel& parallel, size_t count, bool on_calling_thread) {
+  return count < kParallelCount || on_calling_thread || parallel.width() == 1;
+}
+
 /// Calls body(begin, end) for all of count rays, in blocks on the device's threads if they are
 /// many.
 template <typename Body>
 void for_rays(const Parallel& parallel, size_t count, bool on_calling_thread, Body&& body) {
-  if (count < kParallelCount || on_calling_thread || parallel.width() == 1) {
+  if (is_alone(parallel, count, on_calling_thread)) {
     const DefaultFloatEnvironment environment;
     body(size_t{0}, count);
   } else {
@@ -110,7 +112,12 @@ void trace_chunks(const CommittedScene& scene, TraversalKernel kernel,
 
 void trace(const CommittedScene& scene, TraversalKernel kernel, const RayBatch& batch,
            bool on_calling_thread) {
-  for_rays(scene.parallel(), batch.count, on_calling_thread, [&](size_t begin, size_t end) {
+  if (is_alone(scene.parallel(), batch.count, on_calling_thread)) {
+    const DefaultFloatEnvironment environment;
+    kernel(scene.view(), batch);
+    return;
+  }
+  scene.parallel().for_blocks(batch.count, kBlockSize, [&](size_t begin, size_t end) {
     kernel(scene.view(),
            {batch.rays + begin * batch.ray_stride, batch.ray_stride,
             batch.answers + begin * batch.answer_stride, batch.answer_stride, end - begin});

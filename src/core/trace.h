@@ -7,6 +7,9 @@
 
 namespace kiwami {
 
+/// Batches below this stay on the calling thread: waking others costs as much as tracing them.
+constexpr size_t kParallelCount = 4096;
+
 /// Runs a kernel over a batch: on the device's threads if it is large, or on the calling thread.
 void trace(const CommittedScene& scene, TraversalKernel kernel, const RayBatch& batch,
            bool on_calling_thread);

@@ -8,11 +8,9 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
 
-/// Rays and answers lie at any address, so they are copied in and out.
-inline kiwami_ray read_ray(const RayBatch& batch, size_t i) {
-  kiwami_ray ray;
-  __builtin_memcpy(&ray, batch.rays + i * batch.ray_stride, sizeof ray);
-  return ray;
+/// Rays and answers lie at any address.
+inline const UnalignedRay& ray_of(const RayBatch& batch, size_t i) {
+  return *reinterpret_cast<const UnalignedRay*>(batch.rays + i * batch.ray_stride);
 }
 template <typename Answer>
 inline void write_answer(const RayBatch& batch, size_t i, const Answer& answer) {
@@ -45,15 +43,14 @@ inline typename Query::Answer trace_set_up(const SceneView& scene, const ScalarR
   Query query;
   query.begin(scene, scalar);
   const float begin = scaled_lower(scalar, scalar.tmin);
-  const Subtree root = Subtree::of(scene.tree.root, scene.tree.root_mask);
-  traverse<N>(scene.tree, {root, begin}, slabs, query, probe);
+  traverse<N>(scene.tree, {scene.tree.root, begin}, slabs, query, probe);
   return query.answer();
 }
 
 template <typename Query, int N, typename Probe>
-inline typename Query::Answer trace_one(const SceneView& scene, const kiwami_ray& ray,
+inline typename Query::Answer trace_one(const SceneView& scene, const UnalignedRay& ray,
                                         Probe& probe) {
-  if (scene.tree.root_mask == 0 || !is_traceable(ray)) return Query::miss();
+  if (scene.tree.root.mask() == 0 || !is_traceable(ray)) return Query::miss();
   ScalarRay scalar;
   set_up_scalar(ray, scalar);
   return trace_set_up<Query, N>(scene, scalar, probe);
@@ -102,12 +99,12 @@ __attribute__((noinline)) void trace_together(const SceneView& scene, const RayB
   Waiting<N> octants[8];
   uint32_t last = 0;
   for (size_t i = 0; i < batch.count; ++i) {
-    const kiwami_ray ray = read_ray(batch, i);
+    const UnalignedRay& ray = ray_of(batch, i);
     if (!is_traceable(ray)) {
       write_answer(batch, i, Query::miss());
       continue;
     }
-    const uint32_t octant = sign_bits(load<4>(second_half(ray))) & 7u;
+    const uint32_t octant = sign_bits(direction_of(ray)) & kAllAxes;
     if (Query::kOrdered && octant != last) flush<Query, N>(scene, octants[last], batch);
     last = octant;
     Waiting<N>& waiting = octants[octant];
@@ -120,13 +117,13 @@ __attribute__((noinline)) void trace_together(const SceneView& scene, const RayB
 
 template <typename Query, int N>
 void trace(const SceneView& scene, const RayBatch& batch) {
-  if (batch.count >= PacketSlabs<N>::kSize && scene.tree.root_mask != 0) {
+  if (batch.count >= PacketSlabs<N>::kSize && scene.tree.root.mask() != 0) {
     trace_together<Query, N>(scene, batch);
     return;
   }
   NoProbe probe;
   for (size_t i = 0; i < batch.count; ++i) {
-    write_answer(batch, i, trace_one<Query, N>(scene, read_ray(batch, i), probe));
+    write_answer(batch, i, trace_one<Query, N>(scene, ray_of(batch, i), probe));
   }
 }
 
@@ -134,7 +131,7 @@ template <typename Query, int N>
 void trace_counted(const SceneView& scene, const RayBatch& batch, TraversalCounters& counters) {
   CountingProbe probe{counters};
   for (size_t i = 0; i < batch.count; ++i) {
-    write_answer(batch, i, trace_one<Query, N>(scene, read_ray(batch, i), probe));
+    write_answer(batch, i, trace_one<Query, N>(scene, ray_of(batch, i), probe));
   }
 }
 

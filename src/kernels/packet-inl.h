@@ -60,7 +60,7 @@ inline void set_up_packet(const ScalarRay* rays, const TreeView& tree, PacketSla
     out.tmin[i] = scaled_lower(rays[i], rays[i].tmin);
     out.best[i] = scaled_upper(rays[i], rays[i].tmax);
   }
-  out.planes = &kPlaneOffsets<N>[sign_bits(load<4>(rays[0].direction)) & 7u];
+  out.planes = &kPlaneOffsets<N>[sign_bits(load<4>(rays[0].direction)) & kAllAxes];
   for (int axis = 0; axis < 3; ++axis) {
     out.least_reciprocal[axis] = least_of<N>(out.reciprocal[axis]);
     out.greatest_reciprocal[axis] = greatest_of<N>(out.reciprocal[axis]);
@@ -182,7 +182,7 @@ struct PacketTraversal {
     greatest_best = greatest_of<N>(packet.best);
     PacketEntry stack[kStackSize<N>];
     PacketEntry* top = stack;
-    *top++ = {{Subtree::of(tree.root, tree.root_mask), packet.least_tmin}, kAll};
+    *top++ = {{tree.root, packet.least_tmin}, kAll};
     while (top != stack) {
       PacketEntry current = *--top;
       const StackEntry& start = current.start;
@@ -193,8 +193,7 @@ struct PacketTraversal {
         for_each_ray(current.rays,
                      [&](int i) { return continue_alone<N>(tree, packet, i, start, queries[i]); });
       } else if (start.subtree.is_leaf()) {
-        const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
-        const LeafBlock<N>& leaf = leaves[start.subtree.index()];
+        const LeafBlock<N>& leaf = leaf_at<N>(tree.memory, start.subtree);
         NoProbe probe;
         for_each_ray(current.rays, [&](int i) {
           return queries[i].visit_leaf(leaf, start.subtree.mask(), probe);
@@ -221,8 +220,7 @@ struct PacketTraversal {
   }
 
   PacketEntry* visit_node(const PacketEntry& current, PacketEntry* top) {
-    const auto* const nodes = static_cast<const WideNode<N>*>(tree.nodes);
-    const WideNode<N>& node = nodes[current.start.subtree.child()];
+    const WideNode<N>& node = node_at<N>(tree.memory, current.start.subtree);
     vfloat<N> entry;
     uint32_t hits =
         test_interval(node, packet, greatest_best, entry) & current.start.subtree.mask();

@@ -21,7 +21,7 @@ inline const GeometryRange& range_of(const SceneView& scene, uint32_t id) {
 /// Whether the ray may meet the triangle at all, by masks and by the side that it shows. A positive
 /// determinant is a triangle seen from its front.
 inline bool is_visible(const SceneView& scene, const ScalarRay& ray, uint32_t id,
-                       float determinant) {
+                       double determinant) {
   if (ray.flags != 0) {
     const uint32_t side =
         __builtin_signbit(determinant) ? KIWAMI_RAY_CULL_BACK_FACES : KIWAMI_RAY_CULL_FRONT_FACES;
@@ -45,22 +45,23 @@ struct QueryBase {
     best_bound = scaled_upper(ray, ray.tmax);
   }
 
-  /// Calls accept(lane, t) for each visible triangle of the lanes that the ray meets between tmin
-  /// and tmax, until accept returns true; then returns true.
+  /// Calls accept(lane, crossings) for each visible triangle of the lanes that the ray meets
+  /// between tmin and tmax, until accept returns true; then returns true.
   template <typename Probe, typename Accept>
   bool for_each_hit(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe, Accept accept) {
     ShearedBlock<N> sheared;
     uint32_t inside = test_inside<N>(leaf, *scalar, broadcast<N>(nearest_bound),
                                      broadcast<N>(best_bound), lanes, sheared, probe);
     if (inside == 0) return false;
-    float t[N], determinant[N];
-    compute_distances<N>(sheared, *scalar, inside, t, determinant);
+    Crossings<N> crossings;
+    compute_crossings<N>(sheared, *scalar, inside, crossings);
     for (; inside; inside &= inside - 1) {
       const int lane = __builtin_ctz(inside);
-      if (!(scalar->tmin <= t[lane] && t[lane] <= scalar->tmax)) continue;
-      if (!is_visible(*scene, *scalar, leaf.id[lane], determinant[lane])) continue;
-      probe.on_accept(scaled_upper(*scalar, t[lane]));
-      if (accept(lane, t[lane])) return true;
+      const float t = crossings.t[lane];
+      if (!(scalar->tmin <= t && t <= scalar->tmax)) continue;
+      if (!is_visible(*scene, *scalar, leaf.id[lane], crossings.sum[lane])) continue;
+      probe.on_accept(scaled_upper(*scalar, t));
+      if (accept(lane, crossings)) return true;
     }
     return false;
   }
@@ -76,6 +77,7 @@ struct ClosestHitQuery : QueryBase<N> {
   uint32_t best_id;
   const LeafBlock<N>* best_leaf;
   int best_lane;
+  double best_v, best_w, best_sum;  ///< its edge functions
 
   void begin(const SceneView& scene_view, const ScalarRay& ray) {
     QueryBase<N>::begin(scene_view, ray);
@@ -87,12 +89,16 @@ struct ClosestHitQuery : QueryBase<N> {
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
     bool is_nearer = false;
-    this->for_each_hit(leaf, lanes, probe, [&](int lane, float t) {
+    this->for_each_hit(leaf, lanes, probe, [&](int lane, const Crossings<N>& crossings) {
+      const float t = crossings.t[lane];
       if (t < best_t || (t == best_t && leaf.id[lane] < best_id)) {
         best_t = t;
         best_id = leaf.id[lane];
         best_leaf = &leaf;
         best_lane = lane;
+        best_v = crossings.v[lane];
+        best_w = crossings.w[lane];
+        best_sum = crossings.sum[lane];
         is_nearer = true;
       }
       return false;
@@ -113,7 +119,8 @@ struct ClosestHitQuery : QueryBase<N> {
     if (!best_leaf) return miss();
     kiwami_hit hit;
     hit.t = best_t;
-    compute_barycentrics(*best_leaf, *this->scalar, best_lane, hit.u, hit.v);
+    hit.u = static_cast<float>(best_v / best_sum);
+    hit.v = static_cast<float>(best_w / best_sum);
     const auto corner = [&](int k, int axis) { return best_leaf->position[k][axis][best_lane]; };
     const auto edge = [&](int k, int axis) { return corner(k, axis) - corner(0, axis); };
     hit.normal_x = edge(1, 1) * edge(2, 2) - edge(1, 2) * edge(2, 1);
@@ -142,7 +149,7 @@ struct AnyHitQuery : QueryBase<N> {
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
-    is_hit = this->for_each_hit(leaf, lanes, probe, [](int, float) { return true; });
+    is_hit = this->for_each_hit(leaf, lanes, probe, [](int, const Crossings<N>&) { return true; });
     return is_hit;
   }
 
@@ -165,7 +172,7 @@ struct AllHitsQuery : QueryBase<N> {
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
-    this->for_each_hit(leaf, lanes, probe, [&](int, float) {
+    this->for_each_hit(leaf, lanes, probe, [&](int, const Crossings<N>&) {
       ++count;
       return false;
     });

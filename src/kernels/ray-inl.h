@@ -26,104 +26,117 @@ constexpr float kLeastMagnitude = 0x1p-100f;
 constexpr float kLeastDirection = 0x1p-63f;
 /// For what raising adds, relative to it.
 constexpr float kRaisedMargin = 16.0f * 0x1p-24f;
-/// Widens scaled distances: where a distance is denormal it has been rounded by up to half the
-/// least float, where a scaled one is, by as much; any other is left as it is.
-constexpr double kLeastDistance = 0x1p-140;
-constexpr double kLeastFloat = 0x1p-149;
+/// Widens scaled distances, by this much before and after scaling: where a distance is denormal it
+/// has been rounded by up to half the least float, where a scaled one is, by as much; any above
+/// 2^-96 is left as it is. A normal number, since processors are slow with others.
+constexpr float kLeastDistance = 0x1p-120f;
 
 /// The part of the set-up that no tree has a say in. Directions and distances are scaled by the
 /// power of two that brings the greatest direction component into [1, 2): so no product below can
 /// overflow, and, a power of two being exact, no result changes.
 struct ScalarRay {
-  float origin[4];     ///< x, y, z; the fourth lane is not used
-  float direction[4];  ///< scaled; the same
-  float ratio[4];      ///< direction / direction[kz]; those of kx and ky are the shears
-  float shear_z;       ///< 1 / direction[kz]
-  float tmin, tmax;    ///< as given, but finite: a distance that overflows is no hit
-  int kx, ky, kz;      ///< kz: axis of the greatest component; kx, ky: so that winding is kept
-  double scale;        ///< scaled distance = distance * scale
-  double unscale;      ///< its inverse
-  double slack;        ///< widens scaled distances
+  float origin[4];      ///< x, y, z; the fourth lane is not used
+  float direction[4];   ///< scaled; the same
+  float reciprocal[4];  ///< 1 / direction, components near zero raised before
+  float ratio[4];       ///< direction / direction[kz]; those of kx and ky are the shears
+  float shear_z;        ///< 1 / direction[kz]
+  float tmin, tmax;     ///< as given, but finite: a distance that overflows is no hit
+  int kx, ky, kz;       ///< kz: axis of the greatest component; kx, ky: so that winding is kept
+  float scale;          ///< scaled distance = distance * scale
+  float slack;          ///< widens scaled distances
+  double unscale;       ///< 1 / scale
   uint32_t mask, flags;
 };
 
+/// A caller's ray where it lies: at any address.
+typedef kiwami_ray UnalignedRay __attribute__((aligned(1)));
+
 /// The first and second four floats of a ray: origin and tmin, direction and tmax.
-inline const float* first_half(const kiwami_ray& ray) {
-  return reinterpret_cast<const float*>(&ray);
+inline vfloat<4> origin_of(const UnalignedRay& ray) {
+  return load<4>(reinterpret_cast<const float*>(&ray));
 }
-inline const float* second_half(const kiwami_ray& ray) { return first_half(ray) + 4; }
+inline vfloat<4> direction_of(const UnalignedRay& ray) {
+  return load<4>(reinterpret_cast<const float*>(&ray) + 4);
+}
+
+constexpr uint32_t kAllAxes = 7;
 
 /// False for a ray that can only miss: NaN, zero or infinite direction, origin out of range, no
 /// finite distance between tmin and tmax, a mask without bits. Each comparison is false for NaN.
-inline bool is_traceable(const kiwami_ray& ray) {
-  constexpr uint32_t xyz = 7;
-  const vfloat<4> origin = absolute(load<4>(first_half(ray)));
-  const vfloat<4> direction = absolute(load<4>(second_half(ray)));
-  const bool is_in_range = (less_equal(origin, broadcast<4>(KIWAMI_MAX_COORDINATE)) & xyz) == xyz;
-  const bool is_finite = (less_equal(direction, broadcast<4>(__FLT_MAX__)) & xyz) == xyz;
-  const bool is_zero = (less_equal(direction, broadcast<4>(0.0f)) & xyz) == xyz;
-  return is_in_range && is_finite && !is_zero && ray.tmin <= ray.tmax && ray.tmin <= __FLT_MAX__ &&
-         ray.tmax >= -__FLT_MAX__ && ray.mask != 0;
+inline bool is_traceable(const UnalignedRay& ray) {
+  const vfloat<4> direction = absolute(direction_of(ray));
+  const uint32_t in_range =
+      less_equal(absolute(origin_of(ray)), broadcast<4>(KIWAMI_MAX_COORDINATE)) &
+      less_equal(direction, broadcast<4>(__FLT_MAX__));
+  return (in_range & kAllAxes) == kAllAxes && first_bits(greatest_of_three(direction)) != 0 &&
+         ray.tmin <= ray.tmax && ray.tmin <= __FLT_MAX__ && ray.tmax >= -__FLT_MAX__ &&
+         ray.mask != 0;
 }
 
-inline double power_of_two(int exponent) {
-  const uint64_t bits = static_cast<uint64_t>(1023 + exponent) << 52;
-  double value;
-  __builtin_memcpy(&value, &bits, sizeof value);
-  return value;
+/// 2^-e for a power of two 2^e, -149 <= e <= 127.
+inline double inverse_of(float power_of_two) {
+  const double power = power_of_two;
+  uint64_t bits;
+  __builtin_memcpy(&bits, &power, sizeof bits);
+  bits = (uint64_t{2 * 1023} << 52) - bits;
+  double inverse;
+  __builtin_memcpy(&inverse, &bits, sizeof inverse);
+  return inverse;
 }
 
-/// The direction with its greatest component brought into [1, 2), and the exponent that it had.
-inline vfloat<4> scale_direction(const kiwami_ray& ray, int& exponent) {
-  vfloat<4> direction = load<4>(second_half(ray));
-  int field = static_cast<int>(first_bits(greatest_of_three(absolute(direction))) >> 23);
-  exponent = field - 127;
-  if (__builtin_expect(field == 0 || field == 254, 0)) {
-    // A factor of 2^-exponent would not be a normal float: a step before leads there.
-    direction = direction * broadcast<4>(field == 0 ? 0x1p64f : 0x1p-1f);
-    field = static_cast<int>(first_bits(greatest_of_three(absolute(direction))) >> 23);
-    exponent = exponent < 0 ? field - 127 - 64 : field - 127 + 1;
+/// The direction with its greatest component brought into [1, 2), and what it was divided by.
+inline vfloat<4> scale_direction(const UnalignedRay& ray, float& scale) {
+  vfloat<4> direction = direction_of(ray);
+  vfloat<4> greatest = greatest_of_three(absolute(direction));
+  const uint32_t exponent_field = first_bits(greatest) >> 23;
+  float step = 1.0f;
+  if (__builtin_expect(exponent_field == 0 || exponent_field == 254, 0)) {
+    // The inverse of this power of two would not be a normal float: a step before leads there.
+    step = exponent_field == 0 ? 0x1p-64f : 2.0f;
+    direction = direction * broadcast<4>(1.0f / step);
+    greatest = greatest_of_three(absolute(direction));
   }
-  const uint32_t factor_bits = static_cast<uint32_t>(254 - field) << 23;
-  float factor;
-  __builtin_memcpy(&factor, &factor_bits, sizeof factor);
-  return direction * broadcast<4>(factor);
+  const vfloat<4> power = power_of_two_below(greatest);
+  scale = first_lane(power) * step;
+  return direction * inverse_of_power(power);
 }
 
-inline void set_up_scalar(const kiwami_ray& ray, ScalarRay& out) {
-  int exponent;
-  const vfloat<4> direction = scale_direction(ray, exponent);
-  store(out.direction, direction);
-  store(out.origin, load<4>(first_half(ray)));
-  const float x = __builtin_fabsf(ray.direction_x), y = __builtin_fabsf(ray.direction_y),
-              z = __builtin_fabsf(ray.direction_z);
-  const float greatest_xy = x < y ? y : x;
-  const int kz = greatest_xy < z ? 2 : x < y ? 1 : 0;
-  // Which of the other two comes first is not branched on: backward rays are as likely as others.
-  constexpr int others[6][2] = {{1, 2}, {2, 1}, {2, 0}, {0, 2}, {0, 1}, {1, 0}};
+/// The axis of the greatest component, the lowest of equal ones, and the other two in the order
+/// that keeps the winding. Neither is branched on: directions are too mixed to be predicted.
+inline void choose_axes(vfloat<4> direction, ScalarRay& out) {
+  const vfloat<4> size = absolute(direction);
+  const int kz = __builtin_ctz(equal(size, greatest_of_three(size)));
   const int is_negative = static_cast<int>(sign_bits(direction) >> kz) & 1;
+  // Two bits for each kz: the axis after it and the one before it; exchanged for backward rays.
+  constexpr int after = 0b001001, before = 0b010010;
+  const int entry = 6 * is_negative + 2 * kz;
   out.kz = kz;
-  out.kx = others[2 * kz + is_negative][0];
-  out.ky = others[2 * kz + is_negative][1];
-  const float major = out.direction[kz];
-  store(out.ratio, direction / broadcast<4>(major));
-  out.shear_z = 1.0f / major;
-  out.scale = power_of_two(exponent);
-  out.unscale = power_of_two(-exponent);
-  out.slack = kLeastDistance + kLeastFloat * out.scale;
+  out.kx = ((before << 6 | after) >> entry) & 3;
+  out.ky = ((after << 6 | before) >> entry) & 3;
+}
+
+inline void set_up_scalar(const UnalignedRay& ray, ScalarRay& out) {
+  const vfloat<4> direction = scale_direction(ray, out.scale);
+  const vfloat<4> raised = max(absolute(direction), broadcast<4>(kLeastDirection));
+  const vfloat<4> reciprocal = copy_sign(broadcast<4>(1.0f) / raised, direction);
+  store(out.direction, direction);
+  store(out.reciprocal, reciprocal);
+  store(out.origin, origin_of(ray));
+  choose_axes(direction, out);
+  store(out.ratio, direction / broadcast<4>(out.direction[out.kz]));
+  out.shear_z = out.reciprocal[out.kz];
+  out.unscale = inverse_of(out.scale);
+  out.slack = kLeastDistance + kLeastDistance * out.scale;
   out.tmin = ray.tmin > -__FLT_MAX__ ? ray.tmin : -__FLT_MAX__;
   out.tmax = ray.tmax < __FLT_MAX__ ? ray.tmax : __FLT_MAX__;
   out.mask = ray.mask;
   out.flags = ray.flags;
 }
 
-/// A lower (upper) bound of a scaled distance.
-inline float scaled_lower(const ScalarRay& ray, float t) {
-  return static_cast<float>(static_cast<double>(t) * ray.scale - ray.slack);
-}
-inline float scaled_upper(const ScalarRay& ray, float t) {
-  return static_cast<float>(static_cast<double>(t) * ray.scale + ray.slack);
-}
+/// A lower (upper) bound of a scaled distance. A power of two scales exactly; what overflows lies
+/// beyond all that can be met, since scaled distances of triangles are below 2^62.
+inline float scaled_lower(const ScalarRay& ray, float t) { return t * ray.scale - ray.slack; }
+inline float scaled_upper(const ScalarRay& ray, float t) { return t * ray.scale + ray.slack; }
 
 /// Where in a node the planes lie that a ray meets first and last along each axis, in bytes, for
 /// each combination of backward axes.
@@ -172,7 +185,7 @@ inline void set_up_axes(const ScalarRay& ray, const TreeView& tree, AxisSlabs& o
   const vfloat<4> direction = load<4>(ray.direction);
   const vfloat<4> size = absolute(direction);
   const vfloat<4> raised = max(size, broadcast<4>(kLeastDirection));
-  const vfloat<4> reciprocal_size = broadcast<4>(1.0f) / raised;
+  out.reciprocal = load<4>(ray.reciprocal);
   const vfloat<4> magnitude =
       absolute(origin) + (load<4>(reinterpret_cast<const float*>(&tree.greatest_bound)) +
                           broadcast<4>(kLeastMagnitude));
@@ -182,12 +195,11 @@ inline void set_up_axes(const ScalarRay& ray, const TreeView& tree, AxisSlabs& o
   // of t, so its own roundings count as well: four of t, six of the term on its way to the slab's
   // distance and two of the sums there, 12 u in all.
   const vfloat<4> moved = (raised - size) * greatest_magnitude * broadcast<4>(1.0f + kRaisedMargin);
-  const vfloat<4> margin = (rounding + moved) * reciprocal_size;
-  out.reciprocal = copy_sign(reciprocal_size, direction);
+  const vfloat<4> margin = (rounding + moved) * absolute(out.reciprocal);
   const vfloat<4> product = origin * out.reciprocal;
   out.near_offset = broadcast<4>(0.0f) - product - margin;
   out.far_offset = margin - product;
-  out.backward = sign_bits(direction) & 7u;
+  out.backward = sign_bits(direction) & kAllAxes;
 }
 
 template <int N>

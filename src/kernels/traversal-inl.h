@@ -10,20 +10,9 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
 
-/// A child reference and its mask in one word, so that they are moved at once.
-struct Subtree {
-  uint64_t bits;
-
-  static Subtree of(uint32_t child, uint32_t mask) { return {child | uint64_t{mask} << 32}; }
-  uint32_t child() const { return static_cast<uint32_t>(bits); }
-  uint32_t mask() const { return static_cast<uint32_t>(bits >> 32); }
-  bool is_leaf() const { return (child() & kLeafFlag) != 0; }
-  uint32_t index() const { return child() & ~kLeafFlag; }
-};
-
 /// A subtree still to be visited.
 struct StackEntry {
-  Subtree subtree;
+  ChildReference subtree;
   float entry;  ///< distance at which the ray enters its box
 };
 
@@ -33,19 +22,16 @@ constexpr uint32_t kStackSize = kMaxWideDepth*(N - 1) + 1;
 
 template <int N>
 inline StackEntry child_of(const WideNode<N>& node, int slot, float entry) {
-  return {Subtree::of(node.child[slot], node.mask[slot]), entry};
+  return {node.child[slot], entry};
 }
 
-/// Brings a child that will be visited later into the cache, but for the ids of a leaf block. What
-/// it is is not branched on: that would be predicted no better than a coin.
+/// Brings a child that will be visited later into the cache, but for the ids of a leaf block.
 // Inlined by force: GCC takes a function that only prefetches for one without effects and drops it.
 template <int N>
-__attribute__((always_inline)) inline void prefetch(const TreeView& tree, Subtree subtree) {
+__attribute__((always_inline)) inline void prefetch(const TreeView& tree, ChildReference subtree) {
   static_assert(sizeof(LeafBlock<N>) > sizeof(WideNode<N>));
-  const bool is_leaf = subtree.is_leaf();
-  const void* const start = is_leaf ? tree.leaves : tree.nodes;
-  const size_t size = is_leaf ? sizeof(LeafBlock<N>) : sizeof(WideNode<N>);
-  const auto* line = static_cast<const char*>(start) + subtree.index() * size;
+  // In a leaf it is a byte too far, which is in the same line and needs no branch.
+  const unsigned char* const line = tree.memory + subtree.node_offset();
 #pragma GCC unroll 16
   for (size_t offset = 0; offset < sizeof(WideNode<N>); offset += 64) {
     __builtin_prefetch(line + offset);
@@ -98,7 +84,7 @@ inline StackEntry* choose_first(const TreeView& tree, const WideNode<N>& node, u
                                 const float* entry, StackEntry* top, StackEntry& next) {
   for (; hits & (hits - 1);) {
     const int slot = 31 - __builtin_clz(hits);
-    top->subtree = Subtree::of(node.child[slot], node.mask[slot]);
+    top->subtree = node.child[slot];
     if constexpr (kNeedsEntry) top->entry = entry[slot];
     prefetch<N>(tree, top->subtree);
     ++top;
@@ -114,15 +100,13 @@ template <int N, typename Query, typename Probe>
 inline bool traverse(const TreeView& tree, const StackEntry& start, const SlabRay<N>& ray,
                      Query& query, Probe& probe) {
   constexpr bool needs_entry = Query::kOrdered || Probe::kNeedsEntry;
-  const auto* const nodes = static_cast<const WideNode<N>*>(tree.nodes);
-  const auto* const leaves = static_cast<const LeafBlock<N>*>(tree.leaves);
   StackEntry stack[kStackSize<N>];
   StackEntry* top = stack;
   StackEntry current = start;
   while (true) {
     if (!current.subtree.is_leaf()) {
       probe.on_node();
-      const WideNode<N>& node = nodes[current.subtree.child()];
+      const WideNode<N>& node = node_at<N>(tree.memory, current.subtree);
       vfloat<N> entry;
       const uint32_t hits = test_boxes(node, ray, query.best_bound, entry) & current.subtree.mask();
       if (hits != 0) {
@@ -137,7 +121,7 @@ inline bool traverse(const TreeView& tree, const StackEntry& start, const SlabRa
       }
     } else {
       probe.on_leaf(current.entry);
-      const LeafBlock<N>& leaf = leaves[current.subtree.index()];
+      const LeafBlock<N>& leaf = leaf_at<N>(tree.memory, current.subtree);
       if (query.visit_leaf(leaf, current.subtree.mask(), probe)) return true;
     }
     do {

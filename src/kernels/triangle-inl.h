@@ -85,12 +85,20 @@ inline uint32_t test_inside(const LeafBlock<N>& leaf, const ScalarRay& ray, vflo
   return inside;
 }
 
-/// Distances of the lanes in inside, in double from the float sheared vertices and rounded once:
-/// the float forms leave the triangle's own box on slivers or on grazing triangles. Four lanes at a
-/// time, and only where there are any. determinant receives its sign, t garbage in other lanes.
+/// What is known of accepted lanes: the distance, and the edge functions in double.
 template <int N>
-inline void compute_distances(const ShearedBlock<N>& block, const ScalarRay& ray, uint32_t inside,
-                              float* t, float* determinant) {
+struct Crossings {
+  float t[N];
+  double v[N], w[N];  ///< edge functions of the sides at b and c
+  double sum[N];      ///< of all three; positive for a triangle seen from its front
+};
+
+/// Computes the lanes in inside, in double from the float sheared vertices, t rounded once: the
+/// float forms leave the triangle's own box on slivers or on grazing triangles. Four lanes at a
+/// time, and only where there are any; the other lanes receive garbage.
+template <int N>
+inline void compute_crossings(const ShearedBlock<N>& block, const ScalarRay& ray, uint32_t inside,
+                              Crossings<N>& out) {
   for (int first = 0; first < N; first += 4) {
     if (((inside >> first) & 0xFu) == 0) continue;
     const vdouble4 ax = load_widened(block.x[0] + first), ay = load_widened(block.y[0] + first);
@@ -103,27 +111,11 @@ inline void compute_distances(const ShearedBlock<N>& block, const ScalarRay& ray
     const vdouble4 along =
         (u * load_widened(block.z[0] + first) + v * load_widened(block.z[1] + first)) +
         w * load_widened(block.z[2] + first);
-    store_rounded(t + first, along / sum * broadcast_double(ray.unscale));
-    store_rounded(determinant + first, sum);
+    store_rounded(out.t + first, along / sum * broadcast_double(ray.unscale));
+    store(out.v + first, v);
+    store(out.w + first, w);
+    store(out.sum + first, sum);
   }
-}
-
-/// The barycentric coordinates of one accepted lane, by the operations of compute_distances.
-template <int N>
-inline void compute_barycentrics(const LeafBlock<N>& leaf, const ScalarRay& ray, int lane, float& u,
-                                 float& v) {
-  double x[3], y[3];
-  for (int k = 0; k < 3; ++k) {
-    const float along = leaf.position[k][ray.kz][lane] - ray.origin[ray.kz];
-    x[k] = (leaf.position[k][ray.kx][lane] - ray.origin[ray.kx]) - ray.ratio[ray.kx] * along;
-    y[k] = (leaf.position[k][ray.ky][lane] - ray.origin[ray.ky]) - ray.ratio[ray.ky] * along;
-  }
-  const double edge_u = x[2] * y[1] - y[2] * x[1];
-  const double edge_v = x[0] * y[2] - y[0] * x[2];
-  const double edge_w = x[1] * y[0] - y[1] * x[0];
-  const double sum = (edge_u + edge_v) + edge_w;
-  u = static_cast<float>(edge_v / sum);
-  v = static_cast<float>(edge_w / sum);
 }
 
 }  // namespace

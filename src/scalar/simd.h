@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The vocabulary of the kernels in portable C++: the oracle of the other instruction sets.
 //
-//   vfloat<N>      N floats: load, store, + - *, min, max, multiply_add, comparisons to bit masks
-//   vfloat<4>      also /, absolute, copy_sign, sign_bits, greatest_of_three, first_bits: for the
-//                  set-up of a ray
+//   vfloat<N>      N floats: load (from any address), store, + - *, min, max, multiply_add,
+//   comparisons to bit masks vfloat<4>      also /, absolute, copy_sign, sign_bits,
+//   greatest_of_three, first_bits,
+//                  first_lane, power_of_two_below, inverse_of_power: for the set-up of a ray
 //   Uniform4<N>    4 floats, each to be read as a vector of equal lanes, many times
 //   vdouble4       4 doubles, read from and written to floats
 //
@@ -39,7 +40,9 @@ inline uint32_t mask_of(Predicate predicate) {
 
 template <int N>
 inline vfloat<N> load(const float* from) {
-  return lane_by_lane<N>([&](int i) { return from[i]; });
+  vfloat<N> result;
+  __builtin_memcpy(&result, from, sizeof result);
+  return result;
 }
 template <int N>
 inline vfloat<N> broadcast(float value) {
@@ -104,6 +107,26 @@ inline vfloat<4> greatest_of_three(vfloat<4> a) {
   const float xy = a.lane[0] < a.lane[1] ? a.lane[1] : a.lane[0];
   return broadcast<4>(xy < a.lane[2] ? a.lane[2] : xy);
 }
+inline float with_bits(float value, uint32_t (*change)(uint32_t)) {
+  uint32_t bits;
+  __builtin_memcpy(&bits, &value, sizeof bits);
+  bits = change(bits);
+  __builtin_memcpy(&value, &bits, sizeof value);
+  return value;
+}
+/// In each lane the greatest power of two that is not above it; the lanes are positive and normal.
+inline vfloat<4> power_of_two_below(vfloat<4> a) {
+  return lane_by_lane<4>([&](int i) {
+    return with_bits(a.lane[i], [](uint32_t bits) { return bits & 0x7F800000u; });
+  });
+}
+/// In each lane the inverse of a power of two, 2^-126 to 2^126.
+inline vfloat<4> inverse_of_power(vfloat<4> a) {
+  return lane_by_lane<4>([&](int i) {
+    return with_bits(a.lane[i], [](uint32_t bits) { return (254u << 23) - bits; });
+  });
+}
+inline float first_lane(vfloat<4> a) { return a.lane[0]; }
 /// The bits of the first lane.
 inline uint32_t first_bits(vfloat<4> a) {
   uint32_t bits;
@@ -126,6 +149,9 @@ inline vdouble4 load_widened(const float* from) {
 }
 inline vdouble4 broadcast_double(double value) {
   return double_by_double([&](int) { return value; });
+}
+inline void store(double* to, vdouble4 a) {
+  for (int i = 0; i < 4; ++i) to[i] = a.lane[i];
 }
 inline void store_rounded(float* to, vdouble4 a) {
   for (int i = 0; i < 4; ++i) to[i] = static_cast<float>(a.lane[i]);

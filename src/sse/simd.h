@@ -35,6 +35,10 @@ inline vdouble4 broadcast_double(double value) {
   const simde__m128d both = simde_mm_set1_pd(value);
   return {both, both};
 }
+inline void store(double* to, vdouble4 a) {
+  simde_mm_storeu_pd(to, a.low);
+  simde_mm_storeu_pd(to + 2, a.high);
+}
 inline void store_rounded(float* to, vdouble4 a) {
   const simde__m128 low = simde_mm_cvtpd_ps(a.low), high = simde_mm_cvtpd_ps(a.high);
   simde_mm_storeu_ps(to, simde_mm_movelh_ps(low, high));

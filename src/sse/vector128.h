@@ -63,6 +63,16 @@ inline vfloat<4> greatest_of_three(vfloat<4> a) {
   const simde__m128 zxy = simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(0, 1, 0, 2));
   return {simde_mm_max_ps(simde_mm_max_ps(a.value, yzx), zxy)};
 }
+/// In each lane the greatest power of two that is not above it; the lanes are positive and normal.
+inline vfloat<4> power_of_two_below(vfloat<4> a) {
+  return {simde_mm_and_ps(a.value, simde_mm_castsi128_ps(simde_mm_set1_epi32(0x7F800000)))};
+}
+/// In each lane the inverse of a power of two, 2^-126 to 2^126.
+inline vfloat<4> inverse_of_power(vfloat<4> a) {
+  return {simde_mm_castsi128_ps(
+      simde_mm_sub_epi32(simde_mm_set1_epi32(254 << 23), simde_mm_castps_si128(a.value)))};
+}
+inline float first_lane(vfloat<4> a) { return simde_mm_cvtss_f32(a.value); }
 inline uint32_t first_bits(vfloat<4> a) {
   return static_cast<uint32_t>(simde_mm_cvtsi128_si32(simde_mm_castps_si128(a.value)));
 }

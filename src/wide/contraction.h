@@ -8,6 +8,9 @@
 
 namespace kiwami {
 
+/// Marks the number of a leaf among those of nodes.
+constexpr uint32_t kLeafFlag = 0x80000000u;
+
 /// One child of a contracted node: the binary node that it was, and what it became: an index into
 /// the contracted nodes, or kLeafFlag and the number of the leaf, counted in the order of slots.
 /// A leaf owns all primitives below its binary node, which need not be a leaf.

@@ -16,7 +16,7 @@ class Flattener {
   Flattener(const WideTree& tree, Memory& memory) : tree_(tree), memory_(memory), nodes_(memory) {}
 
   FlatTree run() {
-    if (tree_.view.root_mask != 0) walk();
+    if (tree_.view.root.mask() != 0) walk();
     FlatTree flat{nodes_.take(), Array<uint32_t>(memory_, tree_.used_lanes)};
     number_primitives(flat.nodes);
     collect_primitives(flat);
@@ -24,13 +24,16 @@ class Flattener {
   }
 
  private:
-  /// Of a child, with nothing yet below it. storage_index keeps the leaf flag until it is visited.
-  kiwami_bvh_node make_node(uint32_t reference, uint32_t mask, uint32_t parent, uint32_t depth) {
+  /// Of a child, with nothing yet below it; a leaf is complete.
+  kiwami_bvh_node make_node(ChildReference reference, uint32_t parent, uint32_t depth) {
     kiwami_bvh_node node{};
     node.parent = parent;
     node.depth = depth;
-    node.storage_index = reference;
-    node.storage_mask = mask;
+    node.storage_index = static_cast<uint32_t>(tree_.number_of(reference));
+    node.storage_mask = reference.mask();
+    if (reference.is_leaf()) {
+      node.primitive_count = static_cast<uint32_t>(std::popcount(node.storage_mask));
+    }
     return node;
   }
 
@@ -52,23 +55,17 @@ class Flattener {
   }
 
   void walk() {
-    nodes_.push_back(make_node(tree_.view.root, tree_.view.root_mask, KIWAMI_INVALID_ID, 0));
+    nodes_.push_back(make_node(tree_.view.root, KIWAMI_INVALID_ID, 0));
     set_root_box(nodes_[0]);
     for (size_t i = 0; i < nodes_.size(); ++i) {
-      if (nodes_[i].storage_index & kLeafFlag) {
-        nodes_[i].storage_index &= ~kLeafFlag;
-        nodes_[i].primitive_count = static_cast<uint32_t>(std::popcount(nodes_[i].storage_mask));
-      } else {
-        open(static_cast<uint32_t>(i));
-      }
+      if (nodes_[i].primitive_count == 0) open(static_cast<uint32_t>(i));
     }
   }
 
   void open(uint32_t index) {
     const uint32_t mask = nodes_[index].storage_mask;
     const uint32_t depth = nodes_[index].depth + 1;
-    const auto* stored =
-        static_cast<const WideNode<N>*>(tree_.view.nodes) + nodes_[index].storage_index;
+    const WideNode<N>* stored = tree_.nodes<N>() + nodes_[index].storage_index;
     nodes_[index].first_child = static_cast<uint32_t>(nodes_.size());
     nodes_[index].child_count = static_cast<uint32_t>(std::popcount(mask));
     if (nodes_.size() + N >= KIWAMI_INVALID_ID) {
@@ -77,8 +74,7 @@ class Flattener {
     }
     for (uint32_t left = mask; left != 0; left &= left - 1) {
       const int slot = std::countr_zero(left);
-      set_box(*stored, slot,
-              nodes_.push_back(make_node(stored->child[slot], stored->mask[slot], index, depth)));
+      set_box(*stored, slot, nodes_.push_back(make_node(stored->child[slot], index, depth)));
     }
   }
 
@@ -98,7 +94,7 @@ class Flattener {
   }
 
   void collect_primitives(FlatTree& flat) const {
-    const auto* const leaves = static_cast<const LeafBlock<N>*>(tree_.view.leaves);
+    const LeafBlock<N>* const leaves = tree_.leaves<N>();
     for (const kiwami_bvh_node& node : flat.nodes) {
       if (node.child_count != 0) continue;
       uint32_t* to = flat.primitive_ids.data() + node.first_primitive;

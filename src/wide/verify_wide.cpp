@@ -25,8 +25,8 @@ class WideVerifier {
       : tree_(tree),
         source_(source),
         primitive_count_(primitive_count),
-        nodes_(static_cast<const WideNode<N>*>(tree.view.nodes)),
-        leaves_(static_cast<const LeafBlock<N>*>(tree.view.leaves)),
+        nodes_(tree.nodes<N>()),
+        leaves_(tree.leaves<N>()),
         owned_slots_(memory, tree.node_count),
         owned_lanes_(memory, tree.leaf_block_count),
         has_triangle_(memory, id_count(source)),
@@ -39,7 +39,7 @@ class WideVerifier {
   void run() {
     check_sizes();
     check_view();
-    if (tree_.view.root_mask != 0) walk();
+    if (tree_.view.root.mask() != 0) walk();
     check_unused();
     check_totals();
   }
@@ -47,8 +47,7 @@ class WideVerifier {
  private:
   /// A child reference, the box that its parent stores for it, and where that stands.
   struct Visit {
-    uint32_t reference;
-    uint32_t mask;
+    ChildReference reference;
     uint32_t depth;
     uint32_t parent;
     Bounds box;
@@ -64,14 +63,10 @@ class WideVerifier {
     if (tree_.leaf_width != tree_.width) {
       fail("the leaf width is %u, expected the node width %u", tree_.leaf_width, tree_.width);
     }
-    if (tree_.nodes.size() != tree_.node_count * sizeof(WideNode<N>) ||
-        tree_.view.nodes != tree_.nodes.data()) {
-      fail("%zu bytes of nodes do not hold %llu nodes", tree_.nodes.size(),
-           static_cast<unsigned long long>(tree_.node_count));
-    }
-    if (tree_.leaves.size() != tree_.leaf_block_count * sizeof(LeafBlock<N>) ||
-        tree_.view.leaves != tree_.leaves.data()) {
-      fail("%zu bytes of leaves do not hold %llu leaf blocks", tree_.leaves.size(),
+    if (tree_.memory.size() != tree_.node_bytes() + tree_.leaf_bytes() ||
+        tree_.view.memory != tree_.memory.data()) {
+      fail("%zu bytes do not hold %llu nodes and %llu leaf blocks", tree_.memory.size(),
+           static_cast<unsigned long long>(tree_.node_count),
            static_cast<unsigned long long>(tree_.leaf_block_count));
     }
   }
@@ -93,11 +88,11 @@ class WideVerifier {
   void walk() {
     const Vec3f limit = tree_.view.greatest_bound;
     const Bounds root_box = {{-limit.x, -limit.y, -limit.z}, limit};
-    stack_.push_back({tree_.view.root, tree_.view.root_mask, 0, KIWAMI_INVALID_ID, root_box});
+    stack_.push_back({tree_.view.root, 0, KIWAMI_INVALID_ID, root_box});
     while (!stack_.empty()) {
       const Visit visit = stack_.back();
       stack_.pop_back();
-      if (visit.reference & kLeafFlag) {
+      if (visit.reference.is_leaf()) {
         visit_leaf(visit);
       } else {
         visit_node(visit);
@@ -105,13 +100,19 @@ class WideVerifier {
     }
   }
 
-  /// Marks the slots (lanes) of a mask as owned by the path that has reached them.
-  static void claim(const char* what, uint32_t index, uint32_t mask, uint64_t count,
-                    uint32_t parent, Array<uint16_t>& owned) {
-    if (index >= count) {
-      fail("node %u refers to %s %u, expected below %llu", parent, what, index,
-           static_cast<unsigned long long>(count));
+  /// The number of the node (leaf block) that a visit refers to, whose slots (lanes) it marks as
+  /// owned.
+  uint32_t claim(const char* what, const Visit& visit, uint64_t count, size_t size, uint64_t first,
+                 Array<uint16_t>& owned) const {
+    const uint64_t offset = visit.reference.offset();
+    const uint32_t parent = visit.parent;
+    if (offset < first || offset - first >= count * size || (offset - first) % size != 0) {
+      fail("node %u refers to byte %llu as a %s, expected one of %llu of %zu bytes from byte %llu",
+           parent, static_cast<unsigned long long>(offset), what,
+           static_cast<unsigned long long>(count), size, static_cast<unsigned long long>(first));
     }
+    const auto index = static_cast<uint32_t>((offset - first) / size);
+    const uint32_t mask = visit.reference.mask();
     if (mask == 0 || (mask >> N) != 0) {
       fail("node %u refers to %s %u with mask 0x%x, expected some of %d bits", parent, what, index,
            mask, N);
@@ -121,18 +122,19 @@ class WideVerifier {
            mask, owned[index] & mask);
     }
     owned[index] = static_cast<uint16_t>(owned[index] | mask);
+    return index;
   }
 
   void visit_node(const Visit& visit) {
-    const uint32_t index = visit.reference;
-    claim("node", index, visit.mask, tree_.node_count, visit.parent, owned_slots_);
+    const uint32_t index =
+        claim("node", visit, tree_.node_count, sizeof(WideNode<N>), 0, owned_slots_);
     const uint32_t depth = visit.depth + 1;
     if (depth > kMaxWideDepth) {
       fail("node %u is at depth %u, expected at most %u", index, depth, kMaxWideDepth);
     }
     depth_ = depth > depth_ ? depth : depth_;
     const WideNode<N>& node = nodes_[index];
-    for (uint32_t mask = visit.mask; mask != 0; mask &= mask - 1) {
+    for (uint32_t mask = visit.reference.mask(); mask != 0; mask &= mask - 1) {
       const int slot = std::countr_zero(mask);
       Bounds box;
       for (int axis = 0; axis < 3; ++axis) {
@@ -145,14 +147,14 @@ class WideVerifier {
              index, visit.parent);
       }
       ++used_slots_;
-      stack_.push_back({node.child[slot], node.mask[slot], depth, index, box});
+      stack_.push_back({node.child[slot], depth, index, box});
     }
   }
 
   void visit_leaf(const Visit& visit) {
-    const uint32_t index = visit.reference & ~kLeafFlag;
-    claim("leaf block", index, visit.mask, tree_.leaf_block_count, visit.parent, owned_lanes_);
-    for (uint32_t mask = visit.mask; mask != 0; mask &= mask - 1) {
+    const uint32_t index = claim("leaf block", visit, tree_.leaf_block_count, sizeof(LeafBlock<N>),
+                                 tree_.node_bytes(), owned_lanes_);
+    for (uint32_t mask = visit.reference.mask(); mask != 0; mask &= mask - 1) {
       check_triangle(index, std::countr_zero(mask), visit.box);
       ++used_lanes_;
     }
@@ -202,7 +204,7 @@ class WideVerifier {
 
   void check_unused_slot(uint32_t index, int slot) const {
     const WideNode<N>& node = nodes_[index];
-    bool is_unused = node.child[slot] == 0 && node.mask[slot] == 0;
+    bool is_unused = node.child[slot].bits == 0;
     for (int axis = 0; axis < 3; ++axis) {
       is_unused = is_unused && node.bounds[axis][0][slot] == FLT_MAX &&
                   node.bounds[axis][1][slot] == -FLT_MAX;

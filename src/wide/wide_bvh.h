@@ -9,10 +9,31 @@
 
 namespace kiwami {
 
-/// A child reference: the index of a wide node, or kLeafFlag and the index of a leaf block. The
-/// mask that goes with it says which slots (lanes) of what it points to are its own, so that
-/// several parents can share one node or block (leaf-node merging: S. Ogaki, 2016).
-constexpr uint32_t kLeafFlag = 0x80000000u;
+/// What a slot refers to, in one word, so that it is read and moved at once: where in the tree's
+/// memory a node or leaf block lies, what it is, and the mask of those of its slots (lanes) that
+/// are this slot's own, so that several parents can share one node or block (leaf-node merging: S.
+/// Ogaki, 2016). Unused slots hold 0. Both sizes are even, which leaves bit 0 of an offset free.
+struct ChildReference {
+  static constexpr uint64_t kLeafBit = 1;
+  static constexpr int kMaskShift = 48;
+
+  uint64_t bits;
+
+  /// To what lies offset bytes into the tree's memory.
+  static ChildReference to_node(uint64_t offset, uint32_t mask) {
+    return {offset | uint64_t{mask} << kMaskShift};
+  }
+  static ChildReference to_leaf(uint64_t offset, uint32_t mask) {
+    return {offset | kLeafBit | uint64_t{mask} << kMaskShift};
+  }
+  bool is_leaf() const { return (bits & kLeafBit) != 0; }
+  uint32_t mask() const { return static_cast<uint32_t>(bits >> kMaskShift); }
+  /// One of these where it is known which applies: neither takes a step to clear the leaf bit.
+  uint64_t node_offset() const { return bits & ((uint64_t{1} << kMaskShift) - 1); }
+  uint64_t leaf_offset() const { return node_offset() - kLeafBit; }
+  uint64_t offset() const { return node_offset() & ~kLeafBit; }
+  bool operator==(const ChildReference&) const = default;
+};
 
 /// N child boxes, relative to the tree's centre and rounded outwards, by axis: bounds[axis][0] are
 /// the lower, bounds[axis][1] the upper ones. An unused slot is in no mask; its box is [+max,
@@ -20,15 +41,11 @@ constexpr uint32_t kLeafFlag = 0x80000000u;
 template <int N>
 struct alignas(64) WideNode {
   float bounds[3][2][N];
-  uint32_t child[N];
-  uint16_t mask[N];
+  ChildReference child[N];
 };
-static_assert(sizeof(WideNode<4>) == 128 && offsetof(WideNode<4>, child) == 96 &&
-              offsetof(WideNode<4>, mask) == 112);
-static_assert(sizeof(WideNode<8>) == 256 && offsetof(WideNode<8>, child) == 192 &&
-              offsetof(WideNode<8>, mask) == 224);
-static_assert(sizeof(WideNode<16>) == 512 && offsetof(WideNode<16>, child) == 384 &&
-              offsetof(WideNode<16>, mask) == 448);
+static_assert(sizeof(WideNode<4>) == 128 && offsetof(WideNode<4>, child) == 96);
+static_assert(sizeof(WideNode<8>) == 256 && offsetof(WideNode<8>, child) == 192);
+static_assert(sizeof(WideNode<16>) == 512 && offsetof(WideNode<16>, child) == 384);
 
 /// W triangles with their original vertices: position[vertex][axis][lane]. The id numbers the
 /// triangles of all geometries through, by geometry and then by primitive, so that the order of
@@ -44,14 +61,21 @@ static_assert(sizeof(LeafBlock<4>) == 160 && sizeof(LeafBlock<8>) == 320 &&
 /// Nodes on the longest path from the root to a leaf; bounds the traversal stack.
 constexpr uint32_t kMaxWideDepth = 72;
 
+template <int N>
+const WideNode<N>& node_at(const unsigned char* memory, ChildReference reference) {
+  return *reinterpret_cast<const WideNode<N>*>(memory + reference.node_offset());
+}
+template <int N>
+const LeafBlock<N>& leaf_at(const unsigned char* memory, ChildReference reference) {
+  return *reinterpret_cast<const LeafBlock<N>*>(memory + reference.leaf_offset());
+}
+
 /// What a kernel needs of a tree. Plain data: it crosses from baseline to ISA code.
 struct TreeView {
-  const void* nodes;     ///< WideNode<N>[]
-  const void* leaves;    ///< LeafBlock<N>[]
-  uint32_t root;         ///< a child reference
-  uint32_t root_mask;    ///< 0: nothing to hit
-  Vec3f centre;          ///< boxes are relative to it
-  float centre_padding;  ///< 0; four floats are read at once
+  const unsigned char* memory;  ///< WideNode<N>[], then LeafBlock<N>[]
+  ChildReference root;          ///< with a mask of 0: nothing to hit
+  Vec3f centre;                 ///< boxes are relative to it
+  float centre_padding;         ///< 0; four floats are read at once
   Vec3f greatest_bound;  ///< per axis, the greatest absolute box coordinate in the stored frame
   float bound_padding;   ///< 0
 };

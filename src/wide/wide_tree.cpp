@@ -91,6 +91,16 @@ Contents extract_contents(const BinaryBvh& binary, const Contraction& contractio
   return contents;
 }
 
+/// What a slot refers to once all have their places.
+ChildReference reference_of(const ContractedSlot& slot, const Layout& layout,
+                            const WideTree& tree) {
+  const uint32_t number = slot.child & ~kLeafFlag;
+  const SharedPlace& place =
+      slot.is_leaf() ? layout.leaves.places[number] : layout.nodes.places[number];
+  return slot.is_leaf() ? tree.leaf_reference(place.index, place.mask)
+                        : tree.node_reference(place.index, place.mask);
+}
+
 /// Writes the nodes and leaf blocks of a tree.
 template <int N>
 class Packer {
@@ -100,9 +110,9 @@ class Packer {
       : contents_(contents),
         source_(source),
         layout_(layout),
-        centre_(tree.view.centre),
-        nodes_(reinterpret_cast<WideNode<N>*>(tree.nodes.data())),
-        leaves_(reinterpret_cast<LeafBlock<N>*>(tree.leaves.data())) {}
+        tree_(tree),
+        nodes_(tree.nodes<N>()),
+        leaves_(tree.leaves<N>()) {}
 
   void run(const Parallel& parallel) {
     parallel.for_blocks(layout_.nodes.count, kPackingBlock, [this](size_t begin, size_t end) {
@@ -148,14 +158,11 @@ class Packer {
       const uint32_t target = place.first + i;
       const Bounds& box = contents_.boxes[owner.first_slot + i];
       for (int axis = 0; axis < 3; ++axis) {
-        node.bounds[axis][0][target] = subtract_down(box.lower[axis], centre_[axis]);
-        node.bounds[axis][1][target] = subtract_up(box.upper[axis], centre_[axis]);
+        const float centre = tree_.view.centre[axis];
+        node.bounds[axis][0][target] = subtract_down(box.lower[axis], centre);
+        node.bounds[axis][1][target] = subtract_up(box.upper[axis], centre);
       }
-      const uint32_t index = slot.child & ~kLeafFlag;
-      const SharedPlace& below =
-          slot.is_leaf() ? layout_.leaves.places[index] : layout_.nodes.places[index];
-      node.child[target] = below.index | (slot.child & kLeafFlag);
-      node.mask[target] = below.mask;
+      node.child[target] = reference_of(slot, layout_, tree_);
       if (slot.is_leaf()) pack_leaf(slot);
     }
   }
@@ -183,7 +190,7 @@ class Packer {
   const Contents& contents_;
   const TriangleSource& source_;
   const Layout& layout_;
-  Vec3f centre_;
+  const WideTree& tree_;
   WideNode<N>* nodes_;
   LeafBlock<N>* leaves_;
 };
@@ -191,26 +198,19 @@ class Packer {
 template <int N>
 void pack(const Contents& contents, const TriangleSource& source, const Layout& layout,
           WideTree& tree, Memory& memory, const Parallel& parallel) {
-  tree.nodes = Array<unsigned char>(memory, tree.node_count * sizeof(WideNode<N>));
-  tree.leaves = Array<unsigned char>(memory, tree.leaf_block_count * sizeof(LeafBlock<N>));
+  tree.memory = Array<unsigned char>(memory, tree.node_bytes() + tree.leaf_bytes());
   Packer<N>(contents, source, layout, tree).run(parallel);
 }
 
-/// All of the view but the pointers. Boxes lie within the root's, and rounding keeps that order,
-/// so the root has the greatest bounds.
-TreeView make_view(const Bounds& root_box, const Layout& layout) {
-  TreeView view{};
+/// The frame of the stored boxes. Boxes lie within the root's, and rounding keeps that order, so
+/// the root has the greatest bounds.
+void set_frame(const Bounds& root_box, TreeView& view) {
   for (int axis = 0; axis < 3; ++axis) {
     const float lower = root_box.lower[axis], upper = root_box.upper[axis];
     const float centre = 0.5f * lower + 0.5f * upper;
     view.centre[axis] = centre;
     view.greatest_bound[axis] = std::max(-subtract_down(lower, centre), subtract_up(upper, centre));
   }
-  const ContractedSlot& root = layout.contraction.slots[0];
-  const SharedPlace& place = root.is_leaf() ? layout.leaves.places[0] : layout.nodes.places[0];
-  view.root = place.index | (root.child & kLeafFlag);
-  view.root_mask = place.mask;
-  return view;
 }
 
 double sah_cost_of(const Contraction& contraction, double root_area, const WideTreeConfig& config) {
@@ -233,16 +233,16 @@ WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
   WideTree tree;
   tree.width = tree.leaf_width = config.width;
   if (binary.primitive_ids.empty()) {
-    tree.nodes = Array<unsigned char>(memory, 0);
-    tree.leaves = Array<unsigned char>(memory, 0);
+    tree.memory = Array<unsigned char>(memory, 0);
     return tree;
   }
   const Layout layout = make_layout(binary, config, memory, parallel);
   const Contraction& contraction = layout.contraction;
   const Bounds root_box = binary.nodes[0].bounds;
-  tree.view = make_view(root_box, layout);
   tree.node_count = layout.nodes.count;
   tree.leaf_block_count = layout.leaves.count;
+  set_frame(root_box, tree.view);
+  tree.view.root = reference_of(contraction.slots[0], layout, tree);
   tree.used_slots = contraction.slots.size() - 1;
   tree.used_lanes = binary.primitive_ids.size();
   tree.depth = contraction.depth;
@@ -260,8 +260,7 @@ WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
       pack<16>(contents, source, layout, tree, memory, parallel);
       break;
   }
-  tree.view.nodes = tree.nodes.data();
-  tree.view.leaves = tree.leaves.data();
+  tree.view.memory = tree.memory.data();
   return tree;
 }
 

@@ -11,10 +11,9 @@
 namespace kiwami {
 
 struct WideTree {
-  uint32_t width = 0;       ///< children a node: 4, 8 or 16
-  uint32_t leaf_width = 0;  ///< triangles a leaf block; equals width
-  Array<unsigned char> nodes;
-  Array<unsigned char> leaves;
+  uint32_t width = 0;           ///< children a node: 4, 8 or 16
+  uint32_t leaf_width = 0;      ///< triangles a leaf block; equals width
+  Array<unsigned char> memory;  ///< the nodes, then the leaf blocks: what the view points to
   TreeView view{};
   uint64_t node_count = 0;
   uint64_t leaf_block_count = 0;
@@ -22,6 +21,32 @@ struct WideTree {
   uint64_t used_lanes = 0;  ///< leaf lanes that are in some mask
   uint32_t depth = 0;       ///< nodes on the longest path from the root to a leaf
   double sah_cost = 0.0;    ///< relative to the root box
+
+  size_t node_bytes() const { return node_count * width * (sizeof(WideNode<4>) / 4); }
+  size_t leaf_bytes() const { return leaf_block_count * leaf_width * (sizeof(LeafBlock<4>) / 4); }
+  template <int N>
+  WideNode<N>* nodes() const {
+    return reinterpret_cast<WideNode<N>*>(const_cast<unsigned char*>(memory.data()));
+  }
+  template <int N>
+  LeafBlock<N>* leaves() const {
+    return reinterpret_cast<LeafBlock<N>*>(const_cast<unsigned char*>(memory.data()) +
+                                           node_bytes());
+  }
+  /// References to a node and to a leaf block by number.
+  ChildReference node_reference(uint64_t number, uint32_t mask) const {
+    return ChildReference::to_node(number * width * (sizeof(WideNode<4>) / 4), mask);
+  }
+  ChildReference leaf_reference(uint64_t number, uint32_t mask) const {
+    return ChildReference::to_leaf(node_bytes() + number * leaf_width * (sizeof(LeafBlock<4>) / 4),
+                                   mask);
+  }
+  /// The number of the node or leaf block that a reference leads to, rounded down.
+  uint64_t number_of(ChildReference reference) const {
+    return reference.is_leaf()
+               ? (reference.leaf_offset() - node_bytes()) / (leaf_width * sizeof(LeafBlock<4>) / 4)
+               : reference.node_offset() / (width * sizeof(WideNode<4>) / 4);
+  }
 };
 
 /// How the children of a wide node are chosen; the numbers of KIWAMI_PARAMETER_CONTRACTION.

@@ -28,7 +28,7 @@ class BrokenTree {
   struct alignas(64) Line {
     unsigned char bytes[64];
   };
-  std::vector<Line> nodes_;
+  std::vector<Line> memory_;
   kiwami::SceneView view_;
 };
 

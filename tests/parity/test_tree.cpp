@@ -2,6 +2,7 @@
 #include "parity/test_tree.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 namespace kiwami_tests {
@@ -72,14 +73,33 @@ void TestTree::build(std::vector<Entry>& entries) {
     view_.tree.greatest_bound[axis] = std::max(std::fabs(moved_down(lower[axis], centre[axis])),
                                                std::fabs(moved_up(upper[axis], centre[axis])));
   }
-  view_.tree.root = build_node<N>(entries.data(), entries.size(), view_.tree.root_mask);
-  view_.tree.nodes = nodes<N>().data();
-  view_.tree.leaves = leaves<N>().data();
+  view_.tree.root = build_node<N>(entries.data(), entries.size());
+  join<N>();
+}
+
+/// Moves nodes and leaves together, and the references to leaves from their own array to there.
+template <int N>
+void TestTree::join() {
+  using kiwami::ChildReference;
+  const size_t node_bytes = nodes<N>().size() * sizeof(kiwami::WideNode<N>);
+  const auto moved = [&](ChildReference to) {
+    return to.is_leaf() ? ChildReference::to_leaf(node_bytes + to.leaf_offset(), to.mask()) : to;
+  };
+  for (auto& node : nodes<N>()) {
+    for (ChildReference& child : node.child) child = moved(child);
+  }
+  view_.tree.root = moved(view_.tree.root);
+  const size_t leaf_bytes = leaves<N>().size() * sizeof(kiwami::LeafBlock<N>);
+  memory_.resize((node_bytes + leaf_bytes + sizeof(Line) - 1) / sizeof(Line));
+  auto* const bytes = reinterpret_cast<unsigned char*>(memory_.data());
+  std::memcpy(bytes, nodes<N>().data(), node_bytes);
+  std::memcpy(bytes + node_bytes, leaves<N>().data(), leaf_bytes);
+  view_.tree.memory = bytes;
 }
 
 template <int N>
-uint32_t TestTree::build_node(Entry* entries, size_t count, uint32_t& mask) {
-  if (count <= N) return add_leaf<N>(entries, count, mask);
+kiwami::ChildReference TestTree::build_node(Entry* entries, size_t count) {
+  if (count <= N) return add_leaf<N>(entries, count);
   Point lower, upper;
   bounds_of(entries, count, lower, upper);
   const Point extent = upper * 0.5f - lower * 0.5f;
@@ -89,10 +109,10 @@ uint32_t TestTree::build_node(Entry* entries, size_t count, uint32_t& mask) {
     const float at = a.lower[axis] + a.upper[axis], bt = b.lower[axis] + b.upper[axis];
     return at != bt ? at < bt : a.id < b.id;
   });
-  const auto number = static_cast<uint32_t>(nodes<N>().size());
+  const size_t number = nodes<N>().size();
   nodes<N>().emplace_back();
   kiwami::WideNode<N> node{};
-  mask = 0;
+  uint32_t mask = 0;
   const Point centre{view_.tree.centre.x, view_.tree.centre.y, view_.tree.centre.z};
   for (size_t slot = 0; slot < N; ++slot) {
     const size_t begin = count * slot / N, end = count * (slot + 1) / N;
@@ -107,23 +127,21 @@ uint32_t TestTree::build_node(Entry* entries, size_t count, uint32_t& mask) {
       node.bounds[a][0][slot] = moved_down(lower[a], centre[a]);
       node.bounds[a][1][slot] = moved_up(upper[a], centre[a]);
     }
-    uint32_t child_mask = 0;
-    node.child[slot] = build_node<N>(entries + begin, end - begin, child_mask);
-    node.mask[slot] = static_cast<uint16_t>(child_mask);
+    node.child[slot] = build_node<N>(entries + begin, end - begin);
   }
   nodes<N>()[number] = node;
-  return number;
+  return kiwami::ChildReference::to_node(number * sizeof node, mask);
 }
 
 template <int N>
-uint32_t TestTree::add_leaf(const Entry* entries, size_t count, uint32_t& mask) {
+kiwami::ChildReference TestTree::add_leaf(const Entry* entries, size_t count) {
   kiwami::LeafBlock<N> block{};
   for (auto& vertex : block.position) {
     for (auto& axis : vertex) std::fill_n(axis, N, std::numeric_limits<float>::quiet_NaN());
   }
   // The last lanes, so that a mask which is not applied shows.
   const size_t first = N - count;
-  mask = 0;
+  uint32_t mask = 0;
   for (size_t i = 0; i < count; ++i) {
     const size_t lane = first + i;
     for (int k = 0; k < 3; ++k) {
@@ -135,12 +153,12 @@ uint32_t TestTree::add_leaf(const Entry* entries, size_t count, uint32_t& mask) 
     mask |= 1u << lane;
   }
   leaves<N>().push_back(block);
-  return kiwami::kLeafFlag | static_cast<uint32_t>(leaves<N>().size() - 1);
+  return kiwami::ChildReference::to_leaf((leaves<N>().size() - 1) * sizeof block, mask);
 }
 
 template <int N>
 void TestTree::shrink(uint32_t number, float part) {
-  auto& node = nodes<N>()[number % nodes<N>().size()];
+  auto& node = reinterpret_cast<kiwami::WideNode<N>*>(memory_.data())[number % nodes<N>().size()];
   const uint32_t slot = number % N, axis = number % 3, side = number / 3 % 2;
   float& bound = node.bounds[axis][side][slot];
   bound += (node.bounds[axis][1 - side][slot] - bound) * part;

@@ -32,13 +32,20 @@ class TestTree {
   template <int N>
   void build(std::vector<Entry>& entries);
   template <int N>
-  uint32_t build_node(Entry* entries, size_t count, uint32_t& mask);
+  kiwami::ChildReference build_node(Entry* entries, size_t count);
   template <int N>
-  uint32_t add_leaf(const Entry* entries, size_t count, uint32_t& mask);
+  kiwami::ChildReference add_leaf(const Entry* entries, size_t count);
+  template <int N>
+  void join();
   template <int N>
   void shrink(uint32_t number, float part);
 
+  struct alignas(64) Line {
+    unsigned char bytes[64];
+  };
+
   uint32_t width_;
+  std::vector<Line> memory_;  ///< what the view points to
   std::vector<kiwami::WideNode<4>> nodes4_;
   std::vector<kiwami::WideNode<8>> nodes8_;
   std::vector<kiwami::WideNode<16>> nodes16_;

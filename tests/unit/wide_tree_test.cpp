@@ -17,8 +17,8 @@ namespace kiwami_tests {
 namespace {
 
 using kiwami::BinaryBvh;
+using kiwami::ChildReference;
 using kiwami::ContractionMethod;
-using kiwami::kLeafFlag;
 using kiwami::LeafBlock;
 using kiwami::WideNode;
 using kiwami::WideTree;
@@ -145,7 +145,7 @@ TEST_F(WideTreeTest, DegenerateInputsGiveValidTrees) {
 TEST_F(WideTreeTest, NoTrianglesGiveNothingToHit) {
   const TreeScene scene("empty", Mesh{});
   const WideTree tree = build(scene, 8, 8, true, one_thread_);
-  EXPECT_EQ(tree.view.root_mask, 0u);
+  EXPECT_EQ(tree.view.root.mask(), 0u);
   EXPECT_EQ(tree.node_count + tree.leaf_block_count, 0u);
   EXPECT_NO_THROW(verify(tree, scene));
 }
@@ -153,8 +153,7 @@ TEST_F(WideTreeTest, NoTrianglesGiveNothingToHit) {
 TEST_F(WideTreeTest, AFewTrianglesAreOneLeaf) {
   const TreeScene scene("three", soup(3, seed()));
   const WideTree tree = build(scene, 8, 8, true, one_thread_);
-  EXPECT_EQ(tree.view.root, kLeafFlag);
-  EXPECT_EQ(tree.view.root_mask, 7u);
+  EXPECT_EQ(tree.view.root, ChildReference::to_leaf(0, 7));
   EXPECT_EQ(tree.depth, 0u);
   EXPECT_DOUBLE_EQ(tree.sah_cost, 1.0);
 }
@@ -167,10 +166,8 @@ TEST_F(WideTreeTest, BytesAreEqualOnAnyNumberOfThreads) {
   for (const kiwami::Parallel* parallel :
        {&plain_threads, static_cast<const kiwami::Parallel*>(&two)}) {
     const WideTree tree = build(scene, 8, 8, true, *parallel);
-    ASSERT_EQ(tree.nodes.size(), reference.nodes.size());
-    ASSERT_EQ(tree.leaves.size(), reference.leaves.size());
-    EXPECT_EQ(std::memcmp(tree.nodes.data(), reference.nodes.data(), tree.nodes.size()), 0);
-    EXPECT_EQ(std::memcmp(tree.leaves.data(), reference.leaves.data(), tree.leaves.size()), 0);
+    ASSERT_EQ(tree.memory.size(), reference.memory.size());
+    EXPECT_EQ(std::memcmp(tree.memory.data(), reference.memory.data(), tree.memory.size()), 0);
     EXPECT_EQ(tree.view.root, reference.view.root);
   }
 }
@@ -189,15 +186,19 @@ class CorruptedWideTree : public WideTreeTest {
     verify(tree_, scene_);
   }
 
-  WideNode<8>* nodes() { return reinterpret_cast<WideNode<8>*>(tree_.nodes.data()); }
-  LeafBlock<8>* leaves() { return reinterpret_cast<LeafBlock<8>*>(tree_.leaves.data()); }
+  WideNode<8>* nodes() { return tree_.nodes<8>(); }
+  LeafBlock<8>* leaves() { return tree_.leaves<8>(); }
+  void set_mask(ChildReference& child, uint32_t mask) {
+    child = child.is_leaf() ? ChildReference::to_leaf(child.offset(), mask)
+                            : ChildReference::to_node(child.offset(), mask);
+  }
 
   /// The first node slot (number of node, slot) that refers to a leaf, or to a node.
   std::pair<uint32_t, int> find_slot(bool to_leaf) {
     for (uint32_t i = 0; i < tree_.node_count; ++i) {
       for (int slot = 0; slot < 8; ++slot) {
-        const bool is_leaf = (nodes()[i].child[slot] & kLeafFlag) != 0;
-        if (nodes()[i].mask[slot] != 0 && is_leaf == to_leaf) return {i, slot};
+        const ChildReference child = nodes()[i].child[slot];
+        if (child.mask() != 0 && child.is_leaf() == to_leaf) return {i, slot};
       }
     }
     throw std::logic_error("no such slot");
@@ -205,7 +206,7 @@ class CorruptedWideTree : public WideTreeTest {
   std::pair<uint32_t, int> find_unused_slot() {
     for (uint32_t i = 0; i < tree_.node_count; ++i) {
       for (int slot = 0; slot < 8; ++slot) {
-        if (nodes()[i].mask[slot] == 0) return {i, slot};
+        if (nodes()[i].child[slot].mask() == 0) return {i, slot};
       }
     }
     throw std::logic_error("no unused slot");
@@ -235,35 +236,45 @@ class CorruptedWideTree : public WideTreeTest {
 
 TEST_F(CorruptedWideTree, ReferenceOutOfRange) {
   const auto [node, slot] = find_slot(false);
-  nodes()[node].child[slot] = static_cast<uint32_t>(tree_.node_count);
-  expect_verdict("expected below");
+  nodes()[node].child[slot] = tree_.node_reference(tree_.node_count, 1);
+  expect_verdict("as a node, expected");
 }
 TEST_F(CorruptedWideTree, LeafReferenceOutOfRange) {
   const auto [node, slot] = find_slot(true);
-  nodes()[node].child[slot] = kLeafFlag | static_cast<uint32_t>(tree_.leaf_block_count);
-  expect_verdict("expected below");
+  nodes()[node].child[slot] = tree_.leaf_reference(tree_.leaf_block_count, 1);
+  expect_verdict("as a leaf block, expected");
+}
+TEST_F(CorruptedWideTree, ReferenceBetweenTwoNodes) {
+  const auto [node, slot] = find_slot(false);
+  nodes()[node].child[slot].bits += 64;
+  expect_verdict("as a node, expected");
+}
+TEST_F(CorruptedWideTree, LeafReferenceToANode) {
+  const auto [node, slot] = find_slot(true);
+  nodes()[node].child[slot] = ChildReference::to_leaf(0, 1);
+  expect_verdict("as a leaf block, expected");
 }
 TEST_F(CorruptedWideTree, CycleToTheRoot) {
   const auto [node, slot] = find_slot(false);
   nodes()[node].child[slot] = tree_.view.root;
-  nodes()[node].mask[slot] = static_cast<uint16_t>(tree_.view.root_mask);
   expect_verdict("of which others own");
 }
 TEST_F(CorruptedWideTree, MaskOfNothing) {
   const auto [node, slot] = find_slot(false);
-  nodes()[node].mask[slot] = 0;
+  set_mask(nodes()[node].child[slot], 0);
   expect_verdict("with mask 0x0");
 }
 TEST_F(CorruptedWideTree, MaskBeyondTheWidth) {
   const auto [node, slot] = find_slot(true);
-  nodes()[node].mask[slot] = static_cast<uint16_t>(nodes()[node].mask[slot] | 0x100);
+  ChildReference& child = nodes()[node].child[slot];
+  set_mask(child, child.mask() | 0x100);
   expect_verdict("expected some of 8 bits");
 }
 TEST_F(CorruptedWideTree, MaskWithoutOneOfItsLanes) {
   const auto [node, slot] = find_slot(true);
-  uint16_t& mask = nodes()[node].mask[slot];
-  ASSERT_NE(mask & (mask - 1), 0);
-  mask = static_cast<uint16_t>(mask & (mask - 1));
+  ChildReference& child = nodes()[node].child[slot];
+  ASSERT_NE(child.mask() & (child.mask() - 1), 0u);
+  set_mask(child, child.mask() & (child.mask() - 1));
   expect_verdict("contents but no owner");
 }
 TEST_F(CorruptedWideTree, ChildBoxOutsideItsParents) {
@@ -333,11 +344,12 @@ TEST_F(CorruptedWideTree, MovedCentre) {
   expect_verdict("leaves its box on axis 2");
 }
 TEST_F(CorruptedWideTree, RootMaskWithoutASlot) {
-  tree_.view.root_mask &= tree_.view.root_mask - 1;
+  const uint32_t mask = tree_.view.root.mask();
+  set_mask(tree_.view.root, mask & (mask - 1));
   expect_verdict("contents but no owner");
 }
 TEST_F(CorruptedWideTree, RootWithoutAMask) {
-  tree_.view.root_mask = 0;
+  set_mask(tree_.view.root, 0);
   expect_verdict("contents but no owner");
 }
 TEST_F(CorruptedWideTree, WrongTotals) {
@@ -351,10 +363,10 @@ TEST_F(CorruptedWideTree, WrongTotals) {
   expect_verdict("levels");
   --tree_.depth;
   tree_.node_count += 1;
-  expect_verdict("bytes of nodes");
+  expect_verdict("bytes do not hold");
   tree_.node_count -= 1;
   tree_.leaf_block_count -= 1;
-  expect_verdict("bytes of leaves");
+  expect_verdict("bytes do not hold");
   tree_.leaf_block_count += 1;
   tree_.width = 7;
   expect_verdict("width is 7");
