@@ -37,6 +37,21 @@ TEST(Contest, RunsEachContenderOnceARoundAndTellsTheSlowOne) {
   EXPECT_LT(seconds[1], seconds[0]);
 }
 
+TEST(Contest, TheProcessorsClockDoesNotCountSleep) {
+  const auto none = [] {};
+  volatile uint64_t sum = 0;
+  const std::vector<Contender> contenders = {
+      {none, [] { std::this_thread::sleep_for(std::chrono::milliseconds(50)); }, none},
+      {none,
+       [&] {
+         for (uint64_t i = 0; i < 3000000; ++i) sum = sum + i;
+       },
+       none}};
+  const auto seconds = interleaved_seconds(contenders, 2, Clock::kProcessor);
+  for (const double asleep : seconds[0]) EXPECT_LT(asleep, 0.02);
+  for (const double busy : seconds[1]) EXPECT_GT(busy, 1e-4);
+}
+
 TEST(Contest, EachBitChangesTheHash) {
   std::vector<kiwami_hit> hits(3);
   std::memset(hits.data(), 0, hits.size() * sizeof hits[0]);

@@ -212,7 +212,7 @@ TraceRow SceneBench::measure_traces(const BuiltScene& scene, const PeerScene* pe
                           [&] { listener_.on_round(count); }});
   }
   const std::vector<std::vector<double>> seconds =
-      interleaved_seconds(contenders, settings_.rounds);
+      interleaved_seconds(contenders, settings_.rounds, settings_.clock);
   row.mrays = millions / median(seconds[0]);
   if (sides.empty()) return row;
 

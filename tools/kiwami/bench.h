@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kiwami/view_options.h"
+#include "measure/contest.h"
 #include "measure/library.h"
 
 namespace kiwami::tools {
@@ -33,6 +34,7 @@ struct BenchSettings {
   BenchPeer peer = BenchPeer::kEmbree;
   bool robust = false;  ///< Embree's robust scene flag
   uint32_t rounds = 5;
+  Clock clock = Clock::kWall;  ///< of the traces; builds are timed by what passes
   size_t ray_count = 1u << 20;
 };
 

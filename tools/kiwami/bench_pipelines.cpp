@@ -108,7 +108,7 @@ void PipelineBench::measure_trace(const BuiltScene& scene, size_t set, PipelineR
   // Once untimed, so that memory and caches are warm.
   for (const Contender& contender : contenders) contender.run();
   const std::vector<std::vector<double>> seconds =
-      interleaved_seconds(contenders, settings_.rounds);
+      interleaved_seconds(contenders, settings_.rounds, settings_.clock);
   std::vector<double> ratios;
   for (size_t i = 0; i < settings_.rounds; ++i) {
     ratios.push_back(seconds.back()[i] / seconds.front()[i]);

@@ -39,6 +39,7 @@ struct BenchOptions {
   std::string pipelines;
   uint32_t rounds = 5;
   uint64_t ray_count = 1u << 20;
+  std::string clock = "wall";
   std::vector<std::string> parameters;
   ViewOptions view;
   std::string json;
@@ -122,6 +123,10 @@ BenchSettings make_settings(const BenchOptions& options) {
   settings.robust = options.robust;
   settings.rounds = options.rounds;
   settings.ray_count = options.ray_count;
+  settings.clock = options.clock == "wall" ? Clock::kWall : Clock::kProcessor;
+  if (settings.clock == Clock::kProcessor && settings.threads != std::vector<uint32_t>{1}) {
+    throw UsageError("--clock is processor, which is for --threads 1 alone");
+  }
   return settings;
 }
 
@@ -251,6 +256,12 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
       ->capture_default_str();
   command.add_option("--ray-count", options.ray_count, "Rays of a set")
       ->check(whole_number(1, uint64_t{1} << 28))
+      ->capture_default_str();
+  command
+      .add_option("--clock", options.clock,
+                  "wall: the time that passes; processor: the time spent on a processor, for one "
+                  "thread on a machine that is busy with other work")
+      ->check(one_of({"wall", "processor"}))
       ->capture_default_str();
   command
       .add_option("--param", options.parameters,

@@ -3,8 +3,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 namespace kiwami::tools {
+namespace {
+
+double seconds_now(Clock clock) {
+  if (clock == Clock::kProcessor) {
+    timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+  }
+  const std::chrono::duration<double> now = std::chrono::steady_clock::now().time_since_epoch();
+  return now.count();
+}
+
+}  // namespace
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<ptrdiff_t>((values.size() - 1) / 2);
@@ -13,16 +27,15 @@ double median(std::vector<double> values) {
 }
 
 std::vector<std::vector<double>> interleaved_seconds(std::span<const Contender> contenders,
-                                                     uint32_t rounds) {
+                                                     uint32_t rounds, Clock clock) {
   std::vector<std::vector<double>> seconds(contenders.size());
   for (uint32_t round = 0; round < rounds; ++round) {
     for (size_t turn = 0; turn < contenders.size(); ++turn) {
       const size_t i = round % 2 == 0 ? turn : contenders.size() - 1 - turn;
       contenders[i].prepare();
-      const auto start = std::chrono::steady_clock::now();
+      const double start = seconds_now(clock);
       contenders[i].run();
-      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-      seconds[i].push_back(spent.count());
+      seconds[i].push_back(seconds_now(clock) - start);
       contenders[i].check();
     }
   }

@@ -14,6 +14,13 @@ namespace kiwami::tools {
 /// The middle of the sorted values; the lower of the two middle ones. At least one value.
 double median(std::vector<double> values);
 
+/// What contests are timed by.
+enum class Clock {
+  kWall,       ///< the time that passes
+  kProcessor,  ///< the time that the process spends on processors: for one thread, on a machine
+               ///< that is busy with other work
+};
+
 /// One side of a comparison. `prepare` and `check` are not timed.
 struct Contender {
   std::function<void()> prepare;
@@ -25,7 +32,7 @@ struct Contender {
 /// a change of its clock meets all alike; the order turns around from round to round. Returns the
 /// seconds of each contender, round by round.
 std::vector<std::vector<double>> interleaved_seconds(std::span<const Contender> contenders,
-                                                     uint32_t rounds);
+                                                     uint32_t rounds, Clock clock = Clock::kWall);
 
 /// The same for contenders that need no preparation; returns the median seconds of each.
 /// `after_run` is called untimed after each run, with the contender's number.
