@@ -22,12 +22,20 @@ packages_of() {
   done
 }
 
-# missing_packages GROUP...: those of them that are not installed.
+# provided_packages: what the installed packages stand in for, one a line. (Node.js of other
+# origin than Debian's brings npm, and refuses the package of that name.)
+provided_packages() {
+  dpkg-query -W -f='${db:Status-Status} ${Provides}\n' | sed -n 's/^installed //p' |
+    tr ',' '\n' | sed 's/[[:space:]]*(.*//; s/[[:space:]]//g'
+}
+
+# missing_packages GROUP...: those of them that are neither installed nor provided.
 missing_packages() {
-  local package status
+  local package status provided
+  provided=$(provided_packages)
   for package in $(packages_of "$@"); do
     status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-    [ "$status" = installed ] || echo "$package"
+    [ "$status" = installed ] || grep -qxF -e "$package" <<<"$provided" || echo "$package"
   done
 }
 

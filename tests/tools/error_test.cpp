@@ -27,6 +27,7 @@ class SceneErrors : public testing::Test {
     expect_failure({"verify", scene}, word);
     expect_failure({"demo", scene}, word);
     expect_failure({"bench", scene}, word);
+    expect_failure({"inspect", scene, "--json", folder_ / "out.json"}, word);
   }
 
   TemporaryFolder folder_;

@@ -21,7 +21,8 @@ int fail(std::string sentence) {
 
 /// CLI11 says of an unknown command no more than that one is required.
 void check_command_name(const CLI::App& app, int argc, char** argv) {
-  const std::string expected = ", expected info, render, verify, demo or bench; see kiwami --help";
+  const std::string expected =
+      ", expected info, render, verify, demo, bench or inspect; see kiwami --help";
   if (argc < 2) throw kiwami::tools::UsageError("no command is given" + expected);
   const std::string name = argv[1];
   const auto commands =
@@ -41,6 +42,7 @@ int run(int argc, char** argv) {
   kiwami::tools::add_verify_command(app, exit_code);
   kiwami::tools::add_demo_command(app, exit_code);
   kiwami::tools::add_bench_command(app, exit_code);
+  kiwami::tools::add_inspect_command(app, exit_code);
   check_command_name(app, argc, argv);
   try {
     app.parse(argc, argv);

@@ -103,14 +103,40 @@ void add_pipeline_options(CLI::App& command, PipelineOptions& options) {
                    "Bottom nodes and leaf blocks are shared by masks (the default)");
 }
 
-std::vector<std::string> split_words(const std::string& option, const std::string& text) {
+BuildOptions parse_pipeline(const std::string& option, const std::string& text,
+                            uint32_t bvh_width) {
+  std::string dense = text;
+  std::erase(dense, ' ');
+  const std::vector<std::string> parts = split_words(option, dense);
+  const std::vector<std::string> methods = split_words(option, parts[0], '+');
+  PipelineOptions pipeline;
+  pipeline.builder = methods[0];
+  for (size_t i = 1; i < methods.size(); ++i) {
+    pipeline.optimizers += (i > 1 ? "," : "") + methods[i];
+  }
+  for (size_t i = 1; i < parts.size(); ++i) {
+    if (parts[i] == "merged" || parts[i] == "unmerged") {
+      pipeline.merge_leaves = parts[i] == "merged";
+    } else {
+      pipeline.contraction = parts[i];
+    }
+  }
+  try {
+    return pipeline.build_options(bvh_width);
+  } catch (const LibraryError& error) {
+    throw UsageError(option + " is '" + text + "': " + error.what());
+  }
+}
+
+std::vector<std::string> split_words(const std::string& option, const std::string& text,
+                                     char separator) {
   std::vector<std::string> words;
   for (size_t start = 0; start <= text.size();) {
-    const size_t end = std::min(text.find(',', start), text.size());
+    const size_t end = std::min(text.find(separator, start), text.size());
     words.push_back(text.substr(start, end - start));
     if (words.back().empty()) {
-      throw UsageError(
-          format("%s is '%s', expected words between commas", option.c_str(), text.c_str()));
+      throw UsageError(format("%s is '%s', expected words between %s", option.c_str(), text.c_str(),
+                              separator == ',' ? "commas" : "plus signs"));
     }
     start = end + 1;
   }

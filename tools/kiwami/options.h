@@ -31,6 +31,10 @@ struct PipelineOptions {
 /// Adds --builder, --optimize, --contract and --merge-leaves.
 void add_pipeline_options(CLI::App& command, PipelineOptions& options);
 
+/// The build of "BUILDER[+OPTIMIZER]...[,CONTRACTION][,merged|unmerged]", spaces apart, as
+/// pipeline_name writes it; `option` is named by the error.
+BuildOptions parse_pipeline(const std::string& option, const std::string& text, uint32_t bvh_width);
+
 /// Which kernels trace, and how.
 struct TraceOptions {
   std::string isa = "auto";
@@ -50,8 +54,9 @@ CLI::Validator finite_number(double lowest, double highest);
 /// "1,2.5,-3" as a vector of finite numbers; `option` is named by the error.
 Vec3 parse_vector(const std::string& option, const std::string& text);
 
-/// The words between the commas; `option` is named when one is empty.
-std::vector<std::string> split_words(const std::string& option, const std::string& text);
+/// The words between the commas, or other separators; `option` is named when one is empty.
+std::vector<std::string> split_words(const std::string& option, const std::string& text,
+                                     char separator = ',');
 
 /// "640x480".
 struct Size {

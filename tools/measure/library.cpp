@@ -88,6 +88,19 @@ class Geometry {
   kiwami_geometry* geometry_ = nullptr;
 };
 
+/// Holds the reference to a scene's tree.
+class Tree {
+ public:
+  explicit Tree(const kiwami_scene* scene) { check(kiwami_scene_get_bvh(scene, &bvh_), nullptr); }
+  ~Tree() { kiwami_bvh_release(bvh_); }
+  Tree(const Tree&) = delete;
+  Tree& operator=(const Tree&) = delete;
+  const kiwami_bvh* get() const { return bvh_; }
+
+ private:
+  kiwami_bvh* bvh_ = nullptr;
+};
+
 }  // namespace
 
 Device::Device(uint32_t isa, uint32_t thread_count) {
@@ -174,17 +187,33 @@ void BuiltScene::any_hits_singly(std::span<const kiwami_ray> rays,
 }
 
 kiwami_bvh_measures BuiltScene::measures() const {
+  const Tree tree(scene_);
+  return measure(tree.get(), 0, nullptr);
+}
+
+MeasuredTree BuiltScene::measured_tree(uint32_t flags) const {
+  const Tree tree(scene_);
+  kiwami_bvh_info info{};
+  info.struct_size = sizeof info;
+  check(kiwami_bvh_get_info(tree.get(), &info), nullptr);
+  MeasuredTree measured{};
+  measured.nodes.resize(info.node_count);
+  measured.measures.resize(info.node_count);
+  check(kiwami_bvh_get_nodes(tree.get(), 0, info.node_count, measured.nodes.data(), 0), nullptr);
+  measured.total = measure(tree.get(), flags, measured.measures.data());
+  return measured;
+}
+
+kiwami_bvh_measures BuiltScene::measure(const kiwami_bvh* bvh, uint32_t flags,
+                                        kiwami_bvh_node_measures* nodes) const {
   kiwami_bvh_measure_desc desc;
   check(kiwami_bvh_measure_desc_init(&desc, sizeof desc), nullptr);
+  desc.flags = flags;
   desc.node_cost = node_cost_;
   desc.leaf_cost = leaf_cost_;
-  kiwami_bvh* bvh = nullptr;
-  check(kiwami_scene_get_bvh(scene_, &bvh), nullptr);
   kiwami_bvh_measures measures{};
   measures.struct_size = sizeof measures;
-  const kiwami_result result = kiwami_bvh_measure(bvh, &desc, &measures, nullptr, 0);
-  kiwami_bvh_release(bvh);
-  check(result, nullptr);
+  check(kiwami_bvh_measure(bvh, &desc, &measures, nodes, 0), nullptr);
   return measures;
 }
 

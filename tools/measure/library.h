@@ -70,6 +70,13 @@ uint32_t method_of_name(uint32_t stage, const std::string& name);
 /// "binned_sah + rotation, optimal, merged".
 std::string pipeline_name(const BuildOptions& options);
 
+/// A tree, its nodes breadth first, and its cost.
+struct MeasuredTree {
+  std::vector<kiwami_bvh_node> nodes;
+  std::vector<kiwami_bvh_node_measures> measures;  ///< of each node
+  kiwami_bvh_measures total;
+};
+
 /// Owns a committed scene whose geometry i is mesh i of the file. It shares the file's buffers, so
 /// the file must outlive it.
 class BuiltScene : public Tracer {
@@ -88,6 +95,8 @@ class BuiltScene : public Tracer {
   void any_hits_singly(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
   /// What the tree costs by the costs that it was built with.
   kiwami_bvh_measures measures() const;
+  /// The same node by node; `flags` are some of KIWAMI_MEASURE_*.
+  MeasuredTree measured_tree(uint32_t flags) const;
   /// What the rays visit, each traced alone.
   kiwami_visits visits(std::span<const kiwami_ray> rays, bool any_hit) const;
 
@@ -95,6 +104,8 @@ class BuiltScene : public Tracer {
   void set_parameters(kiwami_device* device, const BuildOptions& options);
   void attach(kiwami_device* device, const Mesh& mesh);
   void commit();
+  kiwami_bvh_measures measure(const kiwami_bvh* bvh, uint32_t flags,
+                              kiwami_bvh_node_measures* nodes) const;
 
   kiwami_scene* scene_ = nullptr;
   kiwami_scene_info info_{};
