@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Kiwami: trees to look at: the nodes and primitives of an acceleration structure as plain arrays,
- * what they cost by the metrics of the field, and how many of them rays visit.
+ * Kiwami: trees to look at, of scenes and over boxes or triangles of the caller: nodes and
+ * primitives as plain arrays, what they cost by the metrics of the field, and how many of them rays
+ * visit.
  */
 #ifndef KIWAMI_BVH_H
 #define KIWAMI_BVH_H
@@ -12,7 +13,7 @@
 extern "C" {
 #endif
 
-/* A reference-counted handle of a tree. It never changes, and holds its device. */
+/* A reference-counted handle of a tree. It holds its device. Only kiwami_bvh_refit changes it. */
 typedef struct kiwami_bvh kiwami_bvh;
 
 /* A node, or a leaf. Nodes are numbered breadth first: node 0 is the root, the children of a node
@@ -32,7 +33,10 @@ typedef struct kiwami_bvh_node {
                              * + primitive_count - 1 of kiwami_bvh_get_primitives */
   uint32_t primitive_count;
   uint32_t storage_index; /* the number of the stored node, or of a leaf's block of primitives, */
-  uint32_t storage_mask;  /* and bit (1 << i) for each of its slots (lanes) i that it owns */
+  uint32_t storage_mask;  /* and bit (1 << i) for each of its slots (lanes) i that it owns. In trees
+                           * of kiwami_bvh_build, which share nothing: its number among the nodes
+                           * with children (the leaves), and as many bits as it has children
+                           * (primitives). */
 } kiwami_bvh_node;
 
 /* Names a primitive as hits do. 8 bytes, at any address. */
@@ -52,7 +56,39 @@ typedef struct kiwami_bvh_info {
   uint32_t primitive_count; /* entries of kiwami_bvh_get_primitives */
   uint32_t reserved;        /* 0 */
   uint64_t bytes;           /* memory that the handle holds */
+  uint64_t skipped_count;   /* primitives left out for a coordinate that is NaN, infinite or out of
+                             * range, or a lower bound above the upper one */
+  double build_seconds;     /* wall-clock time of the build (of the scene's commit) */
 } kiwami_bvh_info;
+
+/* The value of one of KIWAMI_PARAMETER_* (scene.h). */
+typedef struct kiwami_parameter_value {
+  uint32_t parameter;
+  uint32_t reserved; /* 0 */
+  double value;
+} kiwami_parameter_value;
+
+/* What kiwami_bvh_build is to build: a tree over boxes, or over the triangles of a mesh. */
+typedef struct kiwami_bvh_desc {
+  uint32_t struct_size; /* bytes of this struct, set by kiwami_bvh_desc_init */
+  uint32_t width;       /* the most children of a node: 2 (the binary tree that builders make and
+                         * optimisers change), 4, 8 or 16; 0: the device's default */
+  const void* boxes;    /* six floats a box: the lower x, y, z, the upper x, y, z; at any address.
+                         * Box i is primitive i of geometry 0. NULL only if box_count is 0. Copied. */
+  uint64_t box_stride;  /* bytes from one box to the next, at least 24; 0: 24 */
+  uint64_t box_count;   /* at most 2^31 - 1 */
+  kiwami_geometry* geometry; /* in place of boxes: a mesh of the device, which the tree holds as its
+                              * geometry 0. NULL: boxes */
+  /* How to build: builder, contraction, leaf size, bins and costs, with the bounds and defaults of
+   * kiwami_parameter_bounds; what is not named has its default. Not BVH_WIDTH, for which there is
+   * width. A MAX_LEAF_SIZE of 0 is 4 in binary trees; parameters of merging mean nothing here.
+   * Copied; NULL only if parameter_count is 0. */
+  const kiwami_parameter_value* parameters;
+  uint64_t parameter_count;
+  const uint32_t* optimizers; /* KIWAMI_OPTIMIZER_*, run in this order on the binary tree. Copied;
+                               * NULL only if optimizer_count is 0. */
+  uint64_t optimizer_count;   /* at most KIWAMI_MAX_OPTIMIZERS */
+} kiwami_bvh_desc;
 
 /* What kiwami_bvh_measure may be told. */
 typedef struct kiwami_bvh_measure_desc {
@@ -122,6 +158,43 @@ enum { KIWAMI_COUNT_CLOSEST_HIT = 0, KIWAMI_COUNT_ANY_HIT = 1 };
  *             2^32 - 2 nodes; OUT_OF_MEMORY
  * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_get_bvh(const kiwami_scene* scene, kiwami_bvh** bvh);
+
+/* Fills *desc with the defaults: no boxes, no geometry, the device's width and the defaults of all
+ * parameters.
+ *   errors    INVALID_ARGUMENT: desc is NULL, or size is below 8
+ * [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_bvh_desc_init(kiwami_bvh_desc* desc, size_t size);
+
+/* Builds a tree, on the device's threads. The tree does not depend on their number. Primitives with
+ * a coordinate that is NaN, infinite or beyond KIWAMI_MAX_COORDINATE, and boxes with a lower bound
+ * above the upper one, are left out and counted.
+ *   bvh       receives the handle, with one reference, or NULL on error
+ *   errors    INVALID_ARGUMENT: NULL, a field of desc, a parameter or its value, an optimizer, a
+ *             geometry of another device, boxes and a geometry at once, a builder or an optimizer
+ *             that needs triangles or a binary tree that there is not; TOO_LARGE: a count beyond
+ * its limit; OUT_OF_MEMORY; CALLBACK: the runner failed; VALIDATION:
+ *             KIWAMI_PARAMETER_VALIDATE_BUILD found a broken invariant
+ * [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_bvh_build(kiwami_device* device, const kiwami_bvh_desc* desc,
+                                          kiwami_bvh** bvh);
+
+/* Moves the boxes of a tree after its primitives have moved; its shape stays.
+ *   boxes     the boxes of all primitives, as many and in the order of kiwami_bvh_build, those that
+ *             were left out then included; stride bytes apart (0: 24). NULL for a tree over a mesh,
+ *             whose vertices are read anew: they may have changed with KIWAMI_MESH_SHARE_BUFFERS.
+ *   count     the number of boxes; 0 for a tree over a mesh
+ *   errors    INVALID_ARGUMENT: NULL, a wrong count, a stride too small, a primitive of the tree
+ * that is out of range now (the tree stays as it was); INVALID_STATE: a tree of a scene;
+ *             OUT_OF_MEMORY; CALLBACK: the runner failed
+ * [one thread per object]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_bvh_refit(kiwami_bvh* bvh, const void* boxes, size_t stride,
+                                          size_t count);
+
+/* Checks every invariant of a tree: parents, children and depths, runs of primitives, boxes around
+ * all that is below them, each primitive in a leaf.
+ *   errors    INVALID_ARGUMENT: bvh is NULL; VALIDATION: the sentence of kiwami_last_error names
+ * the node; OUT_OF_MEMORY [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_bvh_validate(const kiwami_bvh* bvh);
 
 /* Adds a reference. NULL is ignored. [any thread]; since 0.1 */
 KIWAMI_API void kiwami_bvh_retain(kiwami_bvh* bvh);

@@ -38,6 +38,61 @@ void copy_out(const char* name, T* target, size_t stride, size_t count, ElementO
   }
 }
 
+constexpr kiwami_bvh_desc kDefaultBvhDesc{};
+constexpr uint64_t kMaxBoxCount = 0x7FFFFFFF;
+
+BoxArray read_box_array(const char* name, const void* boxes, size_t stride, size_t count) {
+  if (count != 0) check_array(name, boxes, stride, sizeof(Bounds), count);
+  return {static_cast<const unsigned char*>(boxes), stride ? stride : sizeof(Bounds), count};
+}
+
+uint32_t read_width(uint32_t width, const Device& device) {
+  if (width == 0) return device.info().default_bvh_width;
+  if (width == 2 || width == 4 || width == 8 || width == 16) return width;
+  throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "desc.width is %u, expected 0, 2, 4, 8 or 16", width);
+}
+
+SceneParameters read_parameters(const kiwami_bvh_desc& desc) {
+  if (desc.parameter_count != 0) check_not_null(desc.parameters, "desc.parameters");
+  if (desc.optimizer_count != 0) check_not_null(desc.optimizers, "desc.optimizers");
+  SceneParameters parameters;
+  for (uint64_t i = 0; i < desc.parameter_count; ++i) {
+    const kiwami_parameter_value& given = desc.parameters[i];
+    check_reserved("desc.parameters[].reserved", given.reserved);
+    if (given.parameter == KIWAMI_PARAMETER_BVH_WIDTH) {
+      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                  "desc.parameters[%llu] is KIWAMI_PARAMETER_BVH_WIDTH, expected desc.width in its "
+                  "place",
+                  static_cast<unsigned long long>(i));
+    }
+    parameters.set(given.parameter, given.value);
+  }
+  parameters.set_optimizers({desc.optimizers, static_cast<size_t>(desc.optimizer_count)});
+  return parameters;
+}
+
+BvhPlan read_plan(const kiwami_bvh_desc* given, Device& device) {
+  const kiwami_bvh_desc desc = read_descriptor(given, kMinimumDescSize, "desc", kDefaultBvhDesc);
+  TriangleMesh* const mesh = object_of(desc.geometry);
+  if (mesh && (desc.boxes || desc.box_count != 0)) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "desc has boxes and a geometry, expected one of them");
+  }
+  if (mesh && &mesh->device() != &device) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "desc.geometry is of another device, expected one of device");
+  }
+  if (desc.box_count > kMaxBoxCount) {
+    throw Error(KIWAMI_ERROR_TOO_LARGE, "desc.box_count is %llu, expected at most %llu",
+                static_cast<unsigned long long>(desc.box_count),
+                static_cast<unsigned long long>(kMaxBoxCount));
+  }
+  return {read_width(desc.width, device),
+          read_box_array("desc.boxes", desc.boxes, static_cast<size_t>(desc.box_stride),
+                         static_cast<size_t>(desc.box_count)),
+          mesh, read_parameters(desc)};
+}
+
 void check_cost(const char* name, double cost) {
   if (cost >= 0.0 && cost <= kGreatestCost) return;
   throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "%s is %g, expected 0 to %g", name, cost,
@@ -69,6 +124,39 @@ kiwami_result kiwami_scene_get_bvh(const kiwami_scene* scene, kiwami_bvh** bvh) 
     check_not_null(bvh, "bvh");
     const DefaultFloatEnvironment environment;
     *bvh = reinterpret_cast<kiwami_bvh*>(Bvh::create(object_of(scene)->device(), committed));
+  });
+}
+
+kiwami_result kiwami_bvh_desc_init(kiwami_bvh_desc* desc, size_t size) {
+  return guarded(nullptr,
+                 [&] { init_descriptor(desc, size, kMinimumDescSize, "desc", kDefaultBvhDesc); });
+}
+
+kiwami_result kiwami_bvh_build(kiwami_device* device, const kiwami_bvh_desc* desc,
+                               kiwami_bvh** bvh) {
+  if (bvh) *bvh = nullptr;
+  return guarded(object_of(device), [&] {
+    check_not_null(device, "device");
+    check_not_null(bvh, "bvh");
+    const DefaultFloatEnvironment environment;
+    const BvhPlan plan = read_plan(desc, *object_of(device));
+    *bvh = reinterpret_cast<kiwami_bvh*>(Bvh::create(*object_of(device), plan));
+  });
+}
+
+kiwami_result kiwami_bvh_refit(kiwami_bvh* bvh, const void* boxes, size_t stride, size_t count) {
+  return guarded(device_of(bvh), [&] {
+    check_not_null(bvh, "bvh");
+    const DefaultFloatEnvironment environment;
+    object_of(bvh)->refit(read_box_array("boxes", boxes, stride, count));
+  });
+}
+
+kiwami_result kiwami_bvh_validate(const kiwami_bvh* bvh) {
+  return guarded(device_of(bvh), [&] {
+    check_not_null(bvh, "bvh");
+    const DefaultFloatEnvironment environment;
+    object_of(bvh)->validate();
   });
 }
 

@@ -1,12 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstring>
+
 #include "core/committed_scene.h"
 #include "core/device.h"
 #include "core/object.h"
 #include "kiwami/bvh.h"
+#include "wide/flat_tree.h"
 
 namespace kiwami {
+
+/// Boxes of the caller, six floats each, at any address.
+struct BoxArray {
+  const unsigned char* data;
+  size_t stride;
+  size_t count;
+
+  Bounds operator[](size_t index) const {
+    Bounds box;
+    std::memcpy(&box, data + index * stride, sizeof box);
+    return box;
+  }
+};
+
+/// A tree to build: over boxes, or over a mesh if there is one.
+struct BvhPlan {
+  uint32_t width;  ///< 2, 4, 8 or 16
+  BoxArray boxes;
+  TriangleMesh* mesh;
+  SceneParameters parameters;
+};
 
 /// What a tree costs, and what each node adds to that.
 struct BvhMeasures {
@@ -14,33 +38,53 @@ struct BvhMeasures {
   Array<kiwami_bvh_node_measures> nodes;
 };
 
-/// A tree to look at: flat nodes, and the ids of the primitives in their order. Never changes.
+/// A tree to look at: flat nodes, and the ids of the primitives in their order.
 class Bvh : public Object<Bvh> {
  public:
   /// The tree of a committed scene, which it holds for its triangles. Throws Error(TOO_LARGE or
   /// OUT_OF_MEMORY).
   static Bvh* create(Device& device, CommittedScene& scene);
+  /// Builds a tree. Throws Error.
+  static Bvh* create(Device& device, const BvhPlan& plan);
   static void destroy(Bvh* bvh) noexcept;
 
   Bvh(Device& device, CommittedScene& scene);
+  Bvh(Device& device, const BvhPlan& plan);
 
   Device& device() const { return *device_; }
   const kiwami_bvh_info& info() const { return info_; }
-  const Array<kiwami_bvh_node>& nodes() const { return nodes_; }
-  size_t primitive_count() const { return primitive_ids_.size(); }
+  const Array<kiwami_bvh_node>& nodes() const { return tree_.nodes; }
+  size_t primitive_count() const { return tree_.primitive_ids.size(); }
   kiwami_bvh_primitive primitive(size_t position) const;
 
   /// struct_size of the totals is 0. Throws Error(OUT_OF_MEMORY).
   BvhMeasures measure(const kiwami_bvh_measure_desc& desc) const;
 
+  /// Gives the nodes the boxes of moved primitives; the boxes are not read for a tree over a mesh.
+  /// Throws Error, and then nothing has changed.
+  void refit(const BoxArray& boxes);
+
+  /// Checks every invariant; throws Error(VALIDATION) or Error(OUT_OF_MEMORY).
+  void validate() const;
+
+  bool is_over_boxes() const { return !scene_.get() && !mesh_.get(); }
+
  private:
+  TriangleSource source() const;
+  Array<BuildPrimitive> collect() const;
+  void build(Array<BuildPrimitive> primitives, const BvhPlan& plan);
+  void note_skipped(const Array<BuildPrimitive>& primitives);
+  Array<Bounds> boxes_by_id() const;
   void describe(uint32_t width, uint32_t leaf_width);
 
   Reference<Device> device_;
   Reference<CommittedScene> scene_;
-  TriangleSource source_;
-  Array<kiwami_bvh_node> nodes_;
-  Array<uint32_t> primitive_ids_;
+  Reference<TriangleMesh> mesh_;
+  TriangleMeshView mesh_view_{};
+  Array<Bounds> boxes_;          ///< by primitive id, of a tree over boxes
+  size_t numbered_count_;        ///< primitives, skipped ones included
+  Array<uint32_t> skipped_ids_;  ///< left out by the build
+  FlatTree tree_;
   kiwami_bvh_info info_{};
 };
 

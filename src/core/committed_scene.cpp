@@ -23,27 +23,6 @@ uint32_t width_of(const SceneParameters& parameters, const Device& device) {
   return width != 0 ? width : default_width_of(device.isa());
 }
 
-ContractionMethod contraction_of(const SceneParameters& parameters) {
-  return static_cast<ContractionMethod>(parameters.whole(KIWAMI_PARAMETER_CONTRACTION));
-}
-
-uint32_t leaf_size_of(const SceneParameters& parameters, uint32_t width) {
-  const uint32_t leaf_size = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
-  return leaf_size != 0 ? std::min(leaf_size, width) : width;
-}
-
-WideTreeConfig wide_config(const SceneParameters& parameters, uint32_t width) {
-  WideTreeConfig config;
-  config.width = width;
-  config.contraction = contraction_of(parameters);
-  config.max_leaf_size = leaf_size_of(parameters, width);
-  config.merge_leaves = parameters.whole(KIWAMI_PARAMETER_MERGE_LEAVES) != 0;
-  config.merge_ring = parameters.whole(KIWAMI_PARAMETER_MERGE_RING);
-  config.node_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_NODE_COST]);
-  config.leaf_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_LEAF_COST]);
-  return config;
-}
-
 double ratio(uint64_t part, uint64_t whole) {
   return whole != 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
@@ -137,7 +116,7 @@ BinaryBvh CommittedScene::build_binary(const SceneParameters& parameters) {
 void CommittedScene::build(const SceneParameters& parameters) {
   BinaryBvh binary = build_binary(parameters);
   const Bounds bounds = binary.nodes.empty() ? Bounds::empty() : binary.nodes[0].bounds;
-  tree_ = build_wide_tree(std::move(binary), source(), wide_config(parameters, tree_.width),
+  tree_ = build_wide_tree(std::move(binary), source(), wide_tree_config(parameters, tree_.width),
                           memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
 

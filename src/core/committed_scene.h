@@ -35,6 +35,8 @@ class CommittedScene : public Object<CommittedScene> {
   bool validates_arguments() const { return device_->validates_arguments(); }
   const kiwami_scene_info& info() const { return info_; }
   const WideTree& tree() const { return tree_; }
+  /// Triangles of all meshes, skipped ones included.
+  size_t numbered_count() const { return numbered_count_; }
   TriangleSource source() const {
     return {mesh_views_.data(), static_cast<uint32_t>(mesh_views_.size())};
   }

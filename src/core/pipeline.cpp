@@ -81,6 +81,15 @@ void run_optimizer(uint32_t method, BinaryBvh& bvh, Memory& memory, const Parall
   }
 }
 
+ContractionMethod contraction_of(const SceneParameters& parameters) {
+  return static_cast<ContractionMethod>(parameters.whole(KIWAMI_PARAMETER_CONTRACTION));
+}
+
+uint32_t leaf_size_of(const SceneParameters& parameters, uint32_t width) {
+  const uint32_t leaf_size = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
+  return leaf_size != 0 ? std::min(leaf_size, width) : width;
+}
+
 }  // namespace
 
 const char* method_name(uint32_t stage, uint32_t number) {
@@ -108,6 +117,18 @@ uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width) 
   // of four triangles, leave it nearly all of the choice (within 2.3 % of the cost from single
   // triangles on real scenes) and a tree that is a third as large.
   return std::min(leaf_size, std::max(4u, leaf_size / 2));
+}
+
+WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t width) {
+  WideTreeConfig config;
+  config.width = width;
+  config.contraction = contraction_of(parameters);
+  config.max_leaf_size = leaf_size_of(parameters, width);
+  config.merge_leaves = parameters.whole(KIWAMI_PARAMETER_MERGE_LEAVES) != 0;
+  config.merge_ring = parameters.whole(KIWAMI_PARAMETER_MERGE_RING);
+  config.node_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_NODE_COST]);
+  config.leaf_cost = static_cast<float>(parameters[KIWAMI_PARAMETER_LEAF_COST]);
+  return config;
 }
 
 BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource&,

@@ -6,6 +6,7 @@
 #include "bvh/triangle_source.h"
 #include "core/scene_parameters.h"
 #include "parallel/parallel.h"
+#include "wide/wide_tree.h"
 
 namespace kiwami {
 
@@ -17,6 +18,9 @@ uint32_t highest_method(uint32_t stage);
 
 /// The most primitives that a leaf of the binary tree owns, for a wide tree of this width.
 uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width);
+
+/// How a wide tree of this width is made of a binary one.
+WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t width);
 
 /// Runs the builder and the optimisers that the parameters name. The primitives are those of the
 /// source that can be hit.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wide/flat_tree.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "core/error.h"
@@ -8,6 +9,28 @@
 
 namespace kiwami {
 namespace {
+
+/// Counts from below, as children stand after their parents, then gives out the runs from above.
+void number_primitives(Array<kiwami_bvh_node>& nodes) {
+  for (size_t i = nodes.size(); i-- > 1;) {
+    nodes[nodes[i].parent].primitive_count += nodes[i].primitive_count;
+  }
+  for (const kiwami_bvh_node& node : nodes) {
+    uint32_t next = node.first_primitive;
+    for (uint32_t i = 0; i < node.child_count; ++i) {
+      kiwami_bvh_node& child = nodes[node.first_child + i];
+      child.first_primitive = next;
+      next += child.primitive_count;
+    }
+  }
+}
+
+/// Throws unless so many nodes have numbers of 32 bits.
+void check_node_count(size_t count) {
+  if (count < KIWAMI_INVALID_ID) return;
+  throw Error(KIWAMI_ERROR_TOO_LARGE, "the tree has more than %zu nodes, expected at most %u",
+              count - 1, KIWAMI_INVALID_ID - 1);
+}
 
 /// Walks the stored nodes path by path.
 template <int N>
@@ -68,28 +91,10 @@ class Flattener {
     const WideNode<N>* stored = tree_.nodes<N>() + nodes_[index].storage_index;
     nodes_[index].first_child = static_cast<uint32_t>(nodes_.size());
     nodes_[index].child_count = static_cast<uint32_t>(std::popcount(mask));
-    if (nodes_.size() + N >= KIWAMI_INVALID_ID) {
-      throw Error(KIWAMI_ERROR_TOO_LARGE, "the tree has more than %zu nodes, expected at most %u",
-                  nodes_.size(), KIWAMI_INVALID_ID - 1);
-    }
+    check_node_count(nodes_.size() + N);
     for (uint32_t left = mask; left != 0; left &= left - 1) {
       const int slot = std::countr_zero(left);
       set_box(*stored, slot, nodes_.push_back(make_node(stored->child[slot], index, depth)));
-    }
-  }
-
-  /// Counts from below, as children stand after their parents, then gives out the runs from above.
-  static void number_primitives(Array<kiwami_bvh_node>& nodes) {
-    for (size_t i = nodes.size(); i-- > 1;) {
-      nodes[nodes[i].parent].primitive_count += nodes[i].primitive_count;
-    }
-    for (const kiwami_bvh_node& node : nodes) {
-      uint32_t next = node.first_primitive;
-      for (uint32_t i = 0; i < node.child_count; ++i) {
-        kiwami_bvh_node& child = nodes[node.first_child + i];
-        child.first_primitive = next;
-        next += child.primitive_count;
-      }
     }
   }
 
@@ -109,7 +114,99 @@ class Flattener {
   GrowingArray<kiwami_bvh_node> nodes_;
 };
 
+/// A binary tree by the numbers of its nodes.
+struct BinaryView {
+  const BinaryBvh& binary;
+
+  const Bounds& box_of(uint32_t node) const { return binary.nodes[node].bounds; }
+  bool is_leaf(uint32_t node) const { return binary.nodes[node].is_leaf(); }
+  uint32_t child_count(uint32_t) const { return 2; }
+  uint32_t child(uint32_t node, uint32_t i) const { return binary.nodes[node].first + i; }
+  uint32_t primitive_count(uint32_t leaf) const { return binary.nodes[leaf].count; }
+  void copy_primitives(uint32_t leaf, uint32_t* to) const {
+    std::copy_n(binary.primitive_ids.begin() + binary.nodes[leaf].first, binary.nodes[leaf].count,
+                to);
+  }
+};
+
+/// A contraction by the numbers of its slots.
+struct ContractionView {
+  const Contraction& contraction;
+  const BinaryBvh& binary;
+
+  const ContractedNode& node_of(uint32_t slot) const {
+    return contraction.nodes[contraction.slots[slot].child];
+  }
+  const Bounds& box_of(uint32_t slot) const {
+    return binary.nodes[contraction.slots[slot].binary_node].bounds;
+  }
+  bool is_leaf(uint32_t slot) const { return contraction.slots[slot].is_leaf(); }
+  uint32_t child_count(uint32_t slot) const { return node_of(slot).slot_count; }
+  uint32_t child(uint32_t slot, uint32_t i) const { return node_of(slot).first_slot + i; }
+  uint32_t primitive_count(uint32_t slot) const {
+    return contraction.leaf_sizes[contraction.slots[slot].child & ~kLeafFlag];
+  }
+  void copy_primitives(uint32_t slot, uint32_t* to) const {
+    for_each_leaf(binary, contraction.slots[slot].binary_node, [&](const BinaryNode& leaf) {
+      to = std::copy_n(binary.primitive_ids.begin() + leaf.first, leaf.count, to);
+    });
+  }
+};
+
+/// The nodes of a tree whose nodes have one parent each; root names the first of them.
+template <typename Tree>
+FlatTree flatten_unshared(const Tree& tree, uint32_t root, size_t primitive_count, Memory& memory) {
+  GrowingArray<kiwami_bvh_node> nodes(memory);
+  GrowingArray<uint32_t> names(memory);  // in the tree, by node
+  uint32_t inner_count = 0, leaf_count = 0;
+  const auto add = [&](uint32_t name, uint32_t parent, uint32_t depth) {
+    const Bounds& box = tree.box_of(name);
+    kiwami_bvh_node node{};
+    for (int axis = 0; axis < 3; ++axis) {
+      node.lower[axis] = box.lower[axis];
+      node.upper[axis] = box.upper[axis];
+    }
+    node.parent = parent;
+    node.depth = depth;
+    nodes.push_back(node);
+    names.push_back(name);
+    check_node_count(nodes.size());
+  };
+  add(root, KIWAMI_INVALID_ID, 0);
+  for (uint32_t i = 0; i < nodes.size(); ++i) {
+    const uint32_t name = names[i], depth = nodes[i].depth;
+    if (tree.is_leaf(name)) {
+      nodes[i].primitive_count = tree.primitive_count(name);
+      nodes[i].storage_index = leaf_count++;
+      nodes[i].storage_mask = (1u << nodes[i].primitive_count) - 1;
+      continue;
+    }
+    nodes[i].first_child = static_cast<uint32_t>(nodes.size());
+    nodes[i].child_count = tree.child_count(name);
+    nodes[i].storage_index = inner_count++;
+    nodes[i].storage_mask = (1u << nodes[i].child_count) - 1;
+    for (uint32_t c = 0; c < tree.child_count(name); ++c) add(tree.child(name, c), i, depth + 1);
+  }
+  FlatTree flat{nodes.take(), Array<uint32_t>(memory, primitive_count)};
+  number_primitives(flat.nodes);
+  for (size_t i = 0; i < flat.nodes.size(); ++i) {
+    if (flat.nodes[i].child_count != 0) continue;
+    tree.copy_primitives(names[i], flat.primitive_ids.data() + flat.nodes[i].first_primitive);
+  }
+  return flat;
+}
+
 }  // namespace
+
+FlatTree flatten(const BinaryBvh& binary, Memory& memory) {
+  if (binary.nodes.empty()) return {};
+  return flatten_unshared(BinaryView{binary}, 0, binary.primitive_ids.size(), memory);
+}
+
+FlatTree flatten(const Contraction& contraction, const BinaryBvh& binary, Memory& memory) {
+  return flatten_unshared(ContractionView{contraction, binary}, 0, binary.primitive_ids.size(),
+                          memory);
+}
 
 FlatTree flatten(const WideTree& tree, Memory& memory) {
   switch (tree.width) {

@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "kiwami/bvh.h"
+#include "wide/contraction.h"
 #include "wide/wide_tree.h"
 
 namespace kiwami {
@@ -15,5 +16,11 @@ struct FlatTree {
 
 /// The paths of a wide tree. Throws Error(TOO_LARGE) where node numbers would not fit.
 FlatTree flatten(const WideTree& tree, Memory& memory);
+
+/// A binary tree itself.
+FlatTree flatten(const BinaryBvh& binary, Memory& memory);
+
+/// A wide tree that is not packed, so that nothing is shared.
+FlatTree flatten(const Contraction& contraction, const BinaryBvh& binary, Memory& memory);
 
 }  // namespace kiwami

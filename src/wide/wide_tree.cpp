@@ -37,17 +37,6 @@ SharedPlaces place(const Array<uint8_t>& sizes, const WideTreeConfig& config, Me
                              : place_alone(sizes, memory);
 }
 
-Contraction contract_by(const BinaryBvh& binary, const WideTreeConfig& config, Memory& memory,
-                        const Parallel& parallel) {
-  if (config.contraction == ContractionMethod::kSurfaceArea) {
-    return contract(binary, config.width, memory, parallel);
-  }
-  const OptimalContractionConfig optimal = {
-      config.width, std::min(config.max_leaf_size, config.width), config.node_cost,
-      config.leaf_cost, config.merge_leaves};
-  return contract_optimally(binary, optimal, memory, parallel);
-}
-
 Layout make_layout(const BinaryBvh& binary, const WideTreeConfig& config, Memory& memory,
                    const Parallel& parallel) {
   Layout layout{contract_by(binary, config, memory, parallel), {}, {}};
@@ -224,6 +213,17 @@ double sah_cost_of(const Contraction& contraction, double root_area, const WideT
 }
 
 }  // namespace
+
+Contraction contract_by(const BinaryBvh& binary, const WideTreeConfig& config, Memory& memory,
+                        const Parallel& parallel) {
+  if (config.contraction == ContractionMethod::kSurfaceArea) {
+    return contract(binary, config.width, memory, parallel);
+  }
+  const OptimalContractionConfig optimal = {
+      config.width, std::min(config.max_leaf_size, config.width), config.node_cost,
+      config.leaf_cost, config.merge_leaves};
+  return contract_optimally(binary, optimal, memory, parallel);
+}
 
 WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
                          const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {

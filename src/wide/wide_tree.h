@@ -6,6 +6,7 @@
 #include "bvh/triangle_source.h"
 #include "core/memory.h"
 #include "parallel/parallel.h"
+#include "wide/contraction.h"
 #include "wide/wide_bvh.h"
 
 namespace kiwami {
@@ -61,6 +62,10 @@ struct WideTreeConfig {
   float node_cost = 1.0f;
   float leaf_cost = 1.0f;
 };
+
+/// The contraction that the config names.
+Contraction contract_by(const BinaryBvh& binary, const WideTreeConfig& config, Memory& memory,
+                        const Parallel& parallel);
 
 /// Contracts a binary tree whose leaves own at most config.width triangles. Takes the tree, to free
 /// it before the wide one is written.

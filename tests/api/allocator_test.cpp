@@ -9,6 +9,23 @@
 namespace kiwami_api_tests {
 namespace {
 
+/// Looks at the tree of a scene, and builds and moves another one. Returns the first error.
+kiwami_result run_trees(kiwami_device* device, const kiwami_scene* scene, kiwami_geometry* mesh) {
+  kiwami_bvh* of_scene = nullptr;
+  kiwami_bvh* built = nullptr;
+  kiwami_bvh_desc desc;
+  kiwami_bvh_desc_init(&desc, sizeof desc);
+  desc.geometry = mesh;
+  kiwami_result result = kiwami_scene_get_bvh(scene, &of_scene);
+  if (result == KIWAMI_OK) result = kiwami_bvh_measure(of_scene, nullptr, nullptr, nullptr, 0);
+  if (result == KIWAMI_OK) result = kiwami_bvh_build(device, &desc, &built);
+  if (result == KIWAMI_OK) result = kiwami_bvh_refit(built, nullptr, 0, 0);
+  if (result == KIWAMI_OK) result = kiwami_bvh_validate(built);
+  kiwami_bvh_release(of_scene);
+  kiwami_bvh_release(built);
+  return result;
+}
+
 /// Makes a device, two meshes and a scene, commits twice and releases all. Returns the first error.
 kiwami_result run_life(CountingAllocator& allocator, const Triangles& triangles) {
   kiwami_device_desc device_desc = default_device();
@@ -24,6 +41,7 @@ kiwami_result run_life(CountingAllocator& allocator, const Triangles& triangles)
   if (result == KIWAMI_OK) result = kiwami_scene_attach(scene, mesh, nullptr);
   if (result == KIWAMI_OK) result = kiwami_scene_commit(scene);
   if (result == KIWAMI_OK) result = kiwami_scene_validate(scene);
+  if (result == KIWAMI_OK) result = run_trees(device, scene, mesh);
   if (result == KIWAMI_OK) result = kiwami_scene_attach(scene, mesh, nullptr);
   if (result == KIWAMI_OK) result = kiwami_scene_commit(scene);
   kiwami_scene_release(scene);

@@ -112,6 +112,27 @@ static void trace_arrays(const kiwami_scene* scene) {
   EXPECT(occluded[0] == 1 && occluded[1] == 0);
 }
 
+static void build_a_tree(kiwami_device* device) {
+  float boxes[3][6] = {{0, 0, 0, 1, 1, 1}, {4, 0, 0, 5, 1, 1}, {9, 0, 0, 10, 1, 1}};
+  const kiwami_parameter_value leaf_size = {KIWAMI_PARAMETER_MAX_LEAF_SIZE, 0, 1};
+  kiwami_bvh* bvh = NULL;
+  kiwami_bvh_desc desc;
+  kiwami_bvh_node root;
+  EXPECT(kiwami_bvh_desc_init(&desc, sizeof desc) == KIWAMI_OK);
+  desc.width = 2;
+  desc.boxes = boxes;
+  desc.box_count = 3;
+  desc.parameters = &leaf_size;
+  desc.parameter_count = 1;
+  EXPECT(kiwami_bvh_build(device, &desc, &bvh) == KIWAMI_OK);
+  boxes[2][3] = 12;
+  EXPECT(kiwami_bvh_refit(bvh, boxes, 0, 3) == KIWAMI_OK);
+  EXPECT(kiwami_bvh_validate(bvh) == KIWAMI_OK);
+  EXPECT(kiwami_bvh_get_nodes(bvh, 0, 1, &root, 0) == KIWAMI_OK);
+  EXPECT(root.child_count == 2 && root.lower[0] == 0 && root.upper[0] == 12);
+  kiwami_bvh_release(bvh);
+}
+
 static void count_visits(const kiwami_scene* scene) {
   const kiwami_ray ray = ray_at(0.5f, 0.25f);
   kiwami_visits visits;
@@ -167,6 +188,7 @@ int main(void) {
   EXPECT(kiwami_scene_commit(NULL) == KIWAMI_ERROR_INVALID_ARGUMENT);
   EXPECT(kiwami_last_error(NULL, text, sizeof text) > sizeof text && strlen(text) == 7);
 
+  build_a_tree(device);
   mesh = make_square(device);
   scene = make_scene(device, mesh);
   kiwami_geometry_release(mesh);

@@ -163,7 +163,7 @@ static void check_bvh(void) {
   FIELD(kiwami_bvh_primitive, geometry_id, 0);
   FIELD(kiwami_bvh_primitive, primitive_id, 4);
 
-  SIZE(kiwami_bvh_info, 40);
+  SIZE(kiwami_bvh_info, 56);
   FIELD(kiwami_bvh_info, struct_size, 0);
   FIELD(kiwami_bvh_info, width, 4);
   FIELD(kiwami_bvh_info, leaf_width, 8);
@@ -173,6 +173,27 @@ static void check_bvh(void) {
   FIELD(kiwami_bvh_info, primitive_count, 24);
   FIELD(kiwami_bvh_info, reserved, 28);
   FIELD(kiwami_bvh_info, bytes, 32);
+  FIELD(kiwami_bvh_info, skipped_count, 40);
+  FIELD(kiwami_bvh_info, build_seconds, 48);
+
+  SIZE(kiwami_parameter_value, 16);
+  FIELD(kiwami_parameter_value, parameter, 0);
+  FIELD(kiwami_parameter_value, reserved, 4);
+  FIELD(kiwami_parameter_value, value, 8);
+}
+
+static void check_bvh_desc(void) {
+  SIZE(kiwami_bvh_desc, 72);
+  FIELD(kiwami_bvh_desc, struct_size, 0);
+  FIELD(kiwami_bvh_desc, width, 4);
+  FIELD(kiwami_bvh_desc, boxes, 8);
+  FIELD(kiwami_bvh_desc, box_stride, 16);
+  FIELD(kiwami_bvh_desc, box_count, 24);
+  FIELD(kiwami_bvh_desc, geometry, 32);
+  FIELD(kiwami_bvh_desc, parameters, 40);
+  FIELD(kiwami_bvh_desc, parameter_count, 48);
+  FIELD(kiwami_bvh_desc, optimizers, 56);
+  FIELD(kiwami_bvh_desc, optimizer_count, 64);
 }
 
 static void check_measures(void) {
@@ -239,6 +260,7 @@ int main(void) {
   if (sizeof(void*) == 8) {
     check_device_and_mesh();
     check_fields();
+    check_bvh_desc();
   }
   check_infos_and_query();
   check_bvh();
