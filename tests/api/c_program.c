@@ -118,6 +118,9 @@ static void build_a_tree(kiwami_device* device) {
   kiwami_bvh* bvh = NULL;
   kiwami_bvh_desc desc;
   kiwami_bvh_node root;
+  kiwami_binary_node nodes[5];
+  kiwami_bvh_primitive primitives[3];
+  size_t node_count = 0;
   EXPECT(kiwami_bvh_desc_init(&desc, sizeof desc) == KIWAMI_OK);
   desc.width = 2;
   desc.boxes = boxes;
@@ -125,6 +128,11 @@ static void build_a_tree(kiwami_device* device) {
   desc.parameters = &leaf_size;
   desc.parameter_count = 1;
   EXPECT(kiwami_bvh_build(device, &desc, &bvh) == KIWAMI_OK);
+  EXPECT(kiwami_bvh_export_counts(bvh, KIWAMI_EXPORT_BINARY, &node_count, NULL) == KIWAMI_OK);
+  EXPECT(node_count == 5);
+  EXPECT(kiwami_bvh_export(bvh, KIWAMI_EXPORT_BINARY, nodes, sizeof nodes, primitives, 3) ==
+         KIWAMI_OK);
+  EXPECT(nodes[0].first == 1 && nodes[0].count == 0 && nodes[0].upper[0] == 10);
   boxes[2][3] = 12;
   EXPECT(kiwami_bvh_refit(bvh, boxes, 0, 3) == KIWAMI_OK);
   EXPECT(kiwami_bvh_validate(bvh) == KIWAMI_OK);

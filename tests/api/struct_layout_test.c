@@ -182,6 +182,48 @@ static void check_bvh(void) {
   FIELD(kiwami_parameter_value, value, 8);
 }
 
+static void check_exported_nodes(void) {
+  SIZE(kiwami_binary_node, 32);
+  FIELD(kiwami_binary_node, lower, 0);
+  FIELD(kiwami_binary_node, first, 12);
+  FIELD(kiwami_binary_node, upper, 16);
+  FIELD(kiwami_binary_node, count, 28);
+
+  SIZE(kiwami_wide4_node, 128);
+  FIELD(kiwami_wide4_node, lower_x, 0);
+  FIELD(kiwami_wide4_node, lower_y, 16);
+  FIELD(kiwami_wide4_node, lower_z, 32);
+  FIELD(kiwami_wide4_node, upper_x, 48);
+  FIELD(kiwami_wide4_node, upper_y, 64);
+  FIELD(kiwami_wide4_node, upper_z, 80);
+  FIELD(kiwami_wide4_node, child, 96);
+  FIELD(kiwami_wide4_node, count, 112);
+
+  SIZE(kiwami_wide8_node, 256);
+  FIELD(kiwami_wide8_node, lower_x, 0);
+  FIELD(kiwami_wide8_node, lower_y, 32);
+  FIELD(kiwami_wide8_node, lower_z, 64);
+  FIELD(kiwami_wide8_node, upper_x, 96);
+  FIELD(kiwami_wide8_node, upper_y, 128);
+  FIELD(kiwami_wide8_node, upper_z, 160);
+  FIELD(kiwami_wide8_node, child, 192);
+  FIELD(kiwami_wide8_node, count, 224);
+
+  SIZE(kiwami_compressed8_node, 80);
+  FIELD(kiwami_compressed8_node, origin, 0);
+  FIELD(kiwami_compressed8_node, exponent, 12);
+  FIELD(kiwami_compressed8_node, inner_mask, 15);
+  FIELD(kiwami_compressed8_node, child_base, 16);
+  FIELD(kiwami_compressed8_node, primitive_base, 20);
+  FIELD(kiwami_compressed8_node, meta, 24);
+  FIELD(kiwami_compressed8_node, lower_x, 32);
+  FIELD(kiwami_compressed8_node, lower_y, 40);
+  FIELD(kiwami_compressed8_node, lower_z, 48);
+  FIELD(kiwami_compressed8_node, upper_x, 56);
+  FIELD(kiwami_compressed8_node, upper_y, 64);
+  FIELD(kiwami_compressed8_node, upper_z, 72);
+}
+
 static void check_bvh_desc(void) {
   SIZE(kiwami_bvh_desc, 72);
   FIELD(kiwami_bvh_desc, struct_size, 0);
@@ -265,6 +307,7 @@ int main(void) {
   check_infos_and_query();
   check_bvh();
   check_measures();
+  check_exported_nodes();
   check_numbers();
   return failures != 0;
 }
