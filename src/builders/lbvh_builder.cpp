@@ -83,9 +83,10 @@ BinaryBvh LbvhBuilder::build(Array<BuildPrimitive> primitives, const Config& con
                              const Parallel& parallel) {
   if (primitives.empty()) return {};
   const size_t count = primitives.size();
-  BinaryBvh bvh{Array<BinaryNode>(memory, 2 * count - 1), Array<uint32_t>(memory, count)};
+  BinaryBvh bvh;
   {
     const MortonOrder order = sort_by_morton_code(std::move(primitives), memory, parallel);
+    bvh = {Array<BinaryNode>(memory, 2 * count - 1), Array<uint32_t>(memory, count)};
     LinearHierarchy hierarchy(order, config.delta, bvh, memory);
     parallel.for_blocks(count, kLeafBlock, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {

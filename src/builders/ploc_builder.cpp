@@ -16,20 +16,16 @@ constexpr size_t kBlockSize = 2048;
 /// are written to the pair of slots that is free next.
 class Clustering {
  public:
-  Clustering(const MortonOrder& order, uint32_t radius, BinaryBvh& bvh, Memory& memory,
+  Clustering(Array<BinaryNode> leaves, uint32_t radius, BinaryBvh& bvh, Memory& memory,
              const Parallel& parallel)
       : bvh_(bvh),
         radius_(radius),
-        count_(order.primitives.size()),
+        count_(leaves.size()),
         parallel_(parallel),
-        clusters_(memory, count_),
+        clusters_(std::move(leaves)),
         joined_(memory, count_),
         nearest_(memory, count_),
-        of_blocks_(memory, (count_ + kBlockSize - 1) / kBlockSize) {
-    for (size_t i = 0; i < count_; ++i) {
-      clusters_[i] = {order.primitives[i].bounds(), static_cast<uint32_t>(i), 1};
-    }
-  }
+        of_blocks_(memory, (count_ + kBlockSize - 1) / kBlockSize) {}
 
   void run() {
     while (count_ > 1) {
@@ -129,12 +125,18 @@ BinaryBvh PlocBuilder::build(Array<BuildPrimitive> primitives, const Config& con
                              const Parallel& parallel) {
   if (primitives.empty()) return {};
   const size_t count = primitives.size();
-  BinaryBvh bvh{Array<BinaryNode>(memory, 2 * count - 1), Array<uint32_t>(memory, count)};
+  BinaryBvh bvh{{}, Array<uint32_t>(memory, count)};
+  Array<BinaryNode> leaves;
   {
     const MortonOrder order = sort_by_morton_code(std::move(primitives), memory, parallel);
-    for (size_t i = 0; i < count; ++i) bvh.primitive_ids[i] = order.primitives[i].id;
-    Clustering(order, config.radius, bvh, memory, parallel).run();
+    leaves = Array<BinaryNode>(memory, count);
+    for (uint32_t i = 0; i < count; ++i) {
+      bvh.primitive_ids[i] = order.primitives[i].id;
+      leaves[i] = {order.primitives[i].bounds(), i, 1};
+    }
   }
+  bvh.nodes = Array<BinaryNode>(memory, 2 * count - 1);
+  Clustering(std::move(leaves), config.radius, bvh, memory, parallel).run();
   relabel_depth_first(bvh, memory);
   limit_depth(bvh, memory);
   return bvh;

@@ -3,24 +3,25 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace kiwami {
 namespace {
 
-/// The nodes that the root names, itself included. No recursion: the tree may be of any depth.
-size_t count_nodes(const BinaryBvh& bvh, Memory& memory) {
-  GrowingArray<uint32_t> open(memory);
-  open.push_back(0);
-  size_t count = 0;
-  while (!open.empty()) {
-    const BinaryNode& node = bvh.nodes[open.back()];
-    open.pop_back();
-    ++count;
-    if (node.is_leaf()) continue;
-    open.push_back(node.first + 1);
-    open.push_back(node.first);
+/// No node comes from here, or it has moved already.
+constexpr uint32_t kMoved = ~0u;
+
+/// Moves node i to place moves_to[i], without a second array of nodes. What no node moves to is
+/// overwritten or stays as it is.
+void move_nodes(Array<BinaryNode>& nodes, Array<uint32_t>& moves_to) {
+  for (uint32_t i = 0; i < nodes.size(); ++i) {
+    BinaryNode carried = nodes[i];
+    // Whoever stood where one was put is the next to move.
+    for (uint32_t to = std::exchange(moves_to[i], kMoved); to != kMoved;) {
+      std::swap(carried, nodes[to]);
+      to = std::exchange(moves_to[to], kMoved);
+    }
   }
-  return count;
 }
 
 /// What limit_depth needs to know of each node's subtree.
@@ -95,36 +96,62 @@ class SubtreeHalving {
 /// The levels of halving count leaves below a node, itself not included.
 uint32_t halving_levels(uint32_t count) { return static_cast<uint32_t>(std::bit_width(count - 1)); }
 
+/// The least cost of a subtree, and its primitives, which stand side by side.
+struct Collapsed {
+  double cost;
+  uint32_t first, count;
+};
+
+// Recursive: no tree is deeper than BinaryBvh::kMaxDepth.
+Collapsed collapse_below(BinaryBvh& bvh, uint32_t index, uint32_t max_leaf_size,
+                         const SahCosts& costs) {
+  BinaryNode& node = bvh.nodes[index];
+  const double leaf_cost = costs.leaf_cost * static_cast<double>(node.bounds.half_area());
+  if (node.is_leaf()) return {leaf_cost * costs.blocks_of(node.count), node.first, node.count};
+  const Collapsed left = collapse_below(bvh, node.first, max_leaf_size, costs);
+  const Collapsed right = collapse_below(bvh, node.first + 1, max_leaf_size, costs);
+  const uint32_t count = left.count + right.count;
+  const double as_node =
+      costs.node_cost * static_cast<double>(node.bounds.half_area()) + left.cost + right.cost;
+  const double as_leaf = leaf_cost * costs.blocks_of(count);
+  if (count > max_leaf_size || as_leaf > as_node) return {as_node, left.first, count};
+  node.first = left.first;
+  node.count = count;
+  return {as_leaf, left.first, count};
+}
+
 }  // namespace
 
 void relabel_depth_first(BinaryBvh& bvh, Memory& memory) {
   if (bvh.nodes.empty()) return;
-  struct Move {
-    uint32_t from, to;
-  };
-  Array<BinaryNode> nodes(memory, count_nodes(bvh, memory));
+  Array<uint32_t> moves_to(memory, bvh.nodes.size());
+  std::fill(moves_to.begin(), moves_to.end(), kMoved);
   Array<uint32_t> ids(memory, bvh.primitive_ids.size());
-  GrowingArray<Move> open(memory);
-  open.push_back({0, 0});
+  // No recursion: the tree may be of any depth.
+  GrowingArray<uint32_t> open(memory);
+  open.push_back(0);
+  moves_to[0] = 0;
   uint32_t next_node = 1, next_id = 0;
   while (!open.empty()) {
-    const Move move = open.back();
+    BinaryNode& node = bvh.nodes[open.back()];
     open.pop_back();
-    BinaryNode node = bvh.nodes[move.from];
+    const uint32_t first = node.first;
     if (node.is_leaf()) {
-      std::copy_n(bvh.primitive_ids.begin() + node.first, node.count, ids.begin() + next_id);
+      std::copy_n(bvh.primitive_ids.begin() + first, node.count, ids.begin() + next_id);
       node.first = next_id;
       next_id += node.count;
-    } else {
-      open.push_back({node.first + 1, next_node + 1});
-      open.push_back({node.first, next_node});
-      node.first = next_node;
-      next_node += 2;
+      continue;
     }
-    nodes[move.to] = node;
+    node.first = moves_to[first] = next_node;
+    moves_to[first + 1] = next_node + 1;
+    next_node += 2;
+    open.push_back(first + 1);
+    open.push_back(first);
   }
-  bvh.nodes = std::move(nodes);
   bvh.primitive_ids = std::move(ids);
+  move_nodes(bvh.nodes, moves_to);
+  moves_to = {};
+  bvh.nodes.shrink(next_node);
 }
 
 void limit_depth(BinaryBvh& bvh, Memory& memory) {
@@ -155,30 +182,8 @@ void limit_depth(BinaryBvh& bvh, Memory& memory) {
 
 void collapse_leaves(BinaryBvh& bvh, uint32_t max_leaf_size, const SahCosts& costs,
                      Memory& memory) {
-  /// The least cost of a subtree, and its primitives, which stand side by side.
-  struct Subtree {
-    double cost;
-    uint32_t first, count;
-  };
   if (bvh.nodes.empty()) return;
-  Array<Subtree> subtrees(memory, bvh.nodes.size());
-  for (size_t i = bvh.nodes.size(); i-- > 0;) {
-    BinaryNode& node = bvh.nodes[i];
-    const double leaf_cost = costs.leaf_cost * static_cast<double>(node.bounds.half_area());
-    if (node.is_leaf()) {
-      subtrees[i] = {leaf_cost * costs.blocks_of(node.count), node.first, node.count};
-      continue;
-    }
-    const Subtree &left = subtrees[node.first], &right = subtrees[node.first + 1];
-    const double as_node =
-        costs.node_cost * static_cast<double>(node.bounds.half_area()) + left.cost + right.cost;
-    subtrees[i] = {as_node, left.first, left.count + right.count};
-    const double as_leaf = leaf_cost * costs.blocks_of(subtrees[i].count);
-    if (subtrees[i].count > max_leaf_size || as_leaf > as_node) continue;
-    subtrees[i].cost = as_leaf;
-    node.first = subtrees[i].first;
-    node.count = subtrees[i].count;
-  }
+  collapse_below(bvh, 0, max_leaf_size, costs);
   relabel_depth_first(bvh, memory);
 }
 
