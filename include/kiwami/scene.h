@@ -27,8 +27,9 @@ enum {
   KIWAMI_PARAMETER_VALIDATE_BUILD = 8, /* 1: commit runs the validator after each stage; 0 */
   KIWAMI_PARAMETER_CONTRACTION = 9,    /* how nodes of two children become wide:
                                         * KIWAMI_CONTRACTION_* */
-  KIWAMI_PARAMETER_BUILDER = 10        /* how the tree of two children a node is made:
+  KIWAMI_PARAMETER_BUILDER = 10,       /* how the tree of two children a node is made:
                                         * KIWAMI_BUILDER_* */
+  KIWAMI_PARAMETER_AAC_QUALITY = 17    /* KIWAMI_BUILDER_AAC: 1: high, in larger cells; 0: fast */
 };
 
 /* The stages of a build that have several methods. */
@@ -40,10 +41,15 @@ enum {
 
 /* Methods by stage. The numbers are pinned; kiwami_method_name gives the name of each. */
 enum {
-  KIWAMI_BUILDER_BINNED_SAH = 0, /* top-down by the surface area heuristic over bins */
-  KIWAMI_BUILDER_LBVH = 1,       /* along a Morton curve, by the cells that codes share */
-  KIWAMI_BUILDER_PLOC = 2,       /* along a Morton curve, nearest neighbours join */
-  KIWAMI_BUILDER_SWEEP_SAH = 3   /* top-down by the surface area heuristic over all positions */
+  KIWAMI_BUILDER_BINNED_SAH = 0,    /* top-down by the surface area heuristic over bins */
+  KIWAMI_BUILDER_LBVH = 1,          /* along a Morton curve, by the cells that codes share */
+  KIWAMI_BUILDER_PLOC = 2,          /* along a Morton curve, nearest neighbours join */
+  KIWAMI_BUILDER_SWEEP_SAH = 3,     /* top-down by the surface area heuristic over all positions */
+  KIWAMI_BUILDER_AGGLOMERATIVE = 5, /* of all pairs of clusters the nearest one joins first */
+  KIWAMI_BUILDER_AAC = 6,           /* the same within the cells of a Morton curve */
+  KIWAMI_BUILDER_MINI_TREE = 7,     /* small trees by sweeping, and one over all of them */
+  KIWAMI_BUILDER_OIBVH = 8,         /* the complete tree along a Morton curve */
+  KIWAMI_BUILDER_STR = 10           /* the tiles of a sort along each axis, as R-trees are packed */
 };
 enum {
   KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1, /* subtrees move to where the area shrinks most */

@@ -16,4 +16,8 @@ struct MortonOrder {
 MortonOrder sort_by_morton_code(Array<BuildPrimitive> primitives, Memory& memory,
                                 const Parallel& parallel);
 
+/// Where the cell of the codes from begin to end is halved: at the first code in which the highest
+/// bit that differs is set. Equal codes are halved by their number.
+uint32_t middle_of_cell(const Array<uint64_t>& codes, uint32_t begin, uint32_t end);
+
 }  // namespace kiwami

@@ -3,9 +3,14 @@
 
 #include <algorithm>
 
+#include "builders/aac_builder.h"
+#include "builders/agglomerative_builder.h"
 #include "builders/binned_sah_builder.h"
 #include "builders/lbvh_builder.h"
+#include "builders/mini_tree_builder.h"
+#include "builders/oibvh_builder.h"
 #include "builders/ploc_builder.h"
+#include "builders/str_builder.h"
 #include "builders/sweep_sah_builder.h"
 #include "bvh/tree_edit.h"
 #include "optimizers/reinsertion.h"
@@ -24,6 +29,11 @@ constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_LBVH, "lbvh"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_PLOC, "ploc"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_SWEEP_SAH, "sweep_sah"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_AGGLOMERATIVE, "agglomerative"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_AAC, "aac"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_MINI_TREE, "mini_tree"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_OIBVH, "oibvh"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_STR, "str"},
     {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_PARALLEL_REINSERTION, "parallel_reinsertion"},
     {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_ROTATION, "rotation"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
@@ -54,6 +64,11 @@ bool makes_leaves(uint32_t builder) {
   return builder == KIWAMI_BUILDER_BINNED_SAH || builder == KIWAMI_BUILDER_SWEEP_SAH;
 }
 
+AacBuilder::Config aac_config(const SceneParameters& parameters) {
+  return parameters.whole(KIWAMI_PARAMETER_AAC_QUALITY) != 0 ? AacBuilder::high_quality()
+                                                             : AacBuilder::fast();
+}
+
 /// One call of the chosen builder.
 BinaryBvh run_builder(Array<BuildPrimitive> primitives, const SceneParameters& parameters,
                       uint32_t width, Memory& memory, const Parallel& parallel) {
@@ -65,6 +80,16 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const SceneParameters& p
     case KIWAMI_BUILDER_SWEEP_SAH:
       return SweepSahBuilder::build(std::move(primitives), sah_config(parameters, width), memory,
                                     parallel);
+    case KIWAMI_BUILDER_AGGLOMERATIVE:
+      return AgglomerativeBuilder::build(std::move(primitives), {}, memory, parallel);
+    case KIWAMI_BUILDER_AAC:
+      return AacBuilder::build(std::move(primitives), aac_config(parameters), memory, parallel);
+    case KIWAMI_BUILDER_MINI_TREE:
+      return MiniTreeBuilder::build(std::move(primitives), {}, memory, parallel);
+    case KIWAMI_BUILDER_OIBVH:
+      return OibvhBuilder::build(std::move(primitives), memory, parallel);
+    case KIWAMI_BUILDER_STR:
+      return StrBuilder::build(std::move(primitives), {width}, memory, parallel);
     default:
       return BinnedSahBuilder::build(std::move(primitives), binned_sah_config(parameters, width),
                                      memory, parallel);

@@ -28,6 +28,7 @@ constexpr NumberedBounds kBounds[] = {
     {KIWAMI_PARAMETER_VALIDATE_BUILD, {0, 1, 0, true}},
     {KIWAMI_PARAMETER_CONTRACTION, {0, 0, KIWAMI_CONTRACTION_OPTIMAL, true}},
     {KIWAMI_PARAMETER_BUILDER, {0, 0, KIWAMI_BUILDER_BINNED_SAH, true}},
+    {KIWAMI_PARAMETER_AAC_QUALITY, {0, 1, 1, true}},
 };
 
 /// The stage whose method a parameter chooses; 0: it chooses none.

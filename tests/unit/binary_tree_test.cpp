@@ -47,4 +47,16 @@ bool are_equal(const BinaryBvh& a, const BinaryBvh& b) {
   return have_equal_bytes(a.nodes, b.nodes) && have_equal_bytes(a.primitive_ids, b.primitive_ids);
 }
 
+std::string text_of(const BinaryBvh& bvh, uint32_t index) {
+  const kiwami::BinaryNode& node = bvh.nodes[index];
+  if (node.is_leaf()) return std::to_string(bvh.primitive_ids[node.first]);
+  return "(" + text_of(bvh, node.first) + " " + text_of(bvh, node.first + 1) + ")";
+}
+
+float area_of_both(const kiwami::Bounds& a, const kiwami::Bounds& b) {
+  kiwami::Bounds both = a;
+  both.extend(b);
+  return both.half_area();
+}
+
 }  // namespace kiwami_tests

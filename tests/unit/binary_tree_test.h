@@ -27,4 +27,10 @@ class BinaryTreeTest : public testing::Test {
 /// Whether two trees are equal to the byte.
 bool are_equal(const kiwami::BinaryBvh& a, const kiwami::BinaryBvh& b);
 
+/// A tree of one primitive a leaf as nested brackets of their ids.
+std::string text_of(const kiwami::BinaryBvh& bvh, uint32_t index = 0);
+
+/// Half the surface of the box around two boxes.
+float area_of_both(const kiwami::Bounds& a, const kiwami::Bounds& b);
+
 }  // namespace kiwami_tests

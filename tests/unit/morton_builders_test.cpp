@@ -24,7 +24,6 @@ namespace {
 
 using kiwami::Array;
 using kiwami::BinaryBvh;
-using kiwami::BinaryNode;
 using kiwami::Bounds;
 using kiwami::BuildPrimitive;
 using kiwami::LbvhBuilder;
@@ -48,19 +47,6 @@ class MortonBuilders : public BinaryTreeTest {
   Threads one_thread_{1};
   kiwami::Parallel many_threads_{0, run_on_plain_threads, nullptr, 8};
 };
-
-/// A tree as nested brackets of primitive ids.
-std::string text_of(const BinaryBvh& bvh, uint32_t index = 0) {
-  const BinaryNode& node = bvh.nodes[index];
-  if (node.is_leaf()) return std::to_string(bvh.primitive_ids[node.first]);
-  return "(" + text_of(bvh, node.first) + " " + text_of(bvh, node.first + 1) + ")";
-}
-
-float area_of_both(const Bounds& a, const Bounds& b) {
-  Bounds both = a;
-  both.extend(b);
-  return both.half_area();
-}
 
 TEST_F(MortonBuilders, CodesTakeTheBitsInTurn) {
   Random random(seed());

@@ -33,7 +33,8 @@ constexpr struct {
                    {"leaf_cost", KIWAMI_PARAMETER_LEAF_COST},
                    {"validate_build", KIWAMI_PARAMETER_VALIDATE_BUILD},
                    {"contraction", KIWAMI_PARAMETER_CONTRACTION},
-                   {"builder", KIWAMI_PARAMETER_BUILDER}};
+                   {"builder", KIWAMI_PARAMETER_BUILDER},
+                   {"aac_quality", KIWAMI_PARAMETER_AAC_QUALITY}};
 
 std::string parameter_names() {
   std::string names;
