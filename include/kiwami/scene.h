@@ -29,6 +29,10 @@ enum {
                                         * KIWAMI_CONTRACTION_* */
   KIWAMI_PARAMETER_BUILDER = 10,       /* how the tree of two children a node is made:
                                         * KIWAMI_BUILDER_* */
+  KIWAMI_PARAMETER_SPLIT_BUDGET = 11,  /* spatial splits: places in leaves beyond one a triangle, at
+                                        * most this part of the triangles, 0 to 4 */
+  KIWAMI_PARAMETER_SPLIT_ALPHA = 12,   /* spatial splits: only where boxes overlap by more than this
+                                        * part of the root's area, 0 to 1 */
   KIWAMI_PARAMETER_AAC_QUALITY = 17    /* KIWAMI_BUILDER_AAC: 1: high, in larger cells; 0: fast */
 };
 
@@ -45,6 +49,7 @@ enum {
   KIWAMI_BUILDER_LBVH = 1,          /* along a Morton curve, by the cells that codes share */
   KIWAMI_BUILDER_PLOC = 2,          /* along a Morton curve, nearest neighbours join */
   KIWAMI_BUILDER_SWEEP_SAH = 3,     /* top-down by the surface area heuristic over all positions */
+  KIWAMI_BUILDER_SPATIAL_SPLIT = 4, /* binned, and triangles are cut where boxes would overlap */
   KIWAMI_BUILDER_AGGLOMERATIVE = 5, /* of all pairs of clusters the nearest one joins first */
   KIWAMI_BUILDER_AAC = 6,           /* the same within the cells of a Morton curve */
   KIWAMI_BUILDER_MINI_TREE = 7,     /* small trees by sweeping, and one over all of them */
@@ -83,6 +88,8 @@ typedef struct kiwami_scene_info {
   double build_seconds;      /* wall-clock time of the last commit */
   float bounds_min[3];       /* of the triangles that can be hit; +inf when there are none */
   float bounds_max[3];       /* -inf when there are none */
+  uint64_t reference_count;  /* places of triangles in leaves: triangle_count, or more where a
+                              * builder divides space */
 } kiwami_scene_info;
 
 /* Makes an empty scene, which must be committed before it is traced.
@@ -149,7 +156,8 @@ KIWAMI_API kiwami_result kiwami_scene_commit(kiwami_scene* scene);
  * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_get_info(const kiwami_scene* scene, kiwami_scene_info* info);
 
-/* Checks every invariant of the committed structure: each triangle in exactly one leaf, each box
+/* Checks every invariant of the committed structure: each triangle in exactly one leaf (or, where a
+ * builder divides space, in leaves that together cover it), each box
  * around all that is below it, each slot and lane owned once, references and depth in range.
  *   errors    INVALID_ARGUMENT: scene is NULL; INVALID_STATE: never committed; VALIDATION: the
  *             sentence of kiwami_last_error names the node; OUT_OF_MEMORY

@@ -2,6 +2,7 @@
 // The binary tree that all builders make and all optimisers edit.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "core/memory.h"
@@ -38,6 +39,8 @@ static_assert(sizeof(BinaryNode) == 32);
 struct BinaryBvh {
   Array<BinaryNode> nodes;
   Array<uint32_t> primitive_ids;
+  /// Spatial splits: a triangle may stand in several leaves, each around a part of it.
+  bool has_duplicates = false;
 
   /// No path from the root to a leaf has more nodes than this; builders keep to it, so that the
   /// traversal stack has a fixed size.
@@ -60,6 +63,18 @@ void for_each_leaf(const BinaryBvh& bvh, uint32_t node, Visit&& visit) {
       stack[size++] = top.first;
     }
   }
+}
+
+/// Writes the ids of all primitives below a node, from left to right, each once; returns the end.
+inline uint32_t* copy_ids_below(const BinaryBvh& bvh, uint32_t node, uint32_t* ids) {
+  uint32_t* end = ids;
+  for_each_leaf(bvh, node, [&](const BinaryNode& leaf) {
+    for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+      const uint32_t id = bvh.primitive_ids[i];
+      if (!bvh.has_duplicates || std::find(ids, end, id) == end) *end++ = id;
+    }
+  });
+  return end;
 }
 
 }  // namespace kiwami

@@ -115,8 +115,9 @@ void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
       build_binary_bvh(std::move(primitives), source(), parameters, width, memory, parallel);
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     primitives = collect();
+    const TriangleSource triangles = source();
     verify_binary_bvh(binary, primitives.data(), primitives.size(),
-                      binary_leaf_size_of(parameters, width), memory);
+                      binary_leaf_size_of(parameters, width), memory, &triangles);
   }
   if (plan.width == 2 || binary.nodes.empty()) {
     tree_ = flatten(binary, memory);

@@ -107,8 +107,9 @@ BinaryBvh CommittedScene::build_binary(const SceneParameters& parameters) {
                                       memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     primitives = collect_build_primitives(source(), numbered_count_, memory_, parallel());
+    const TriangleSource triangles = source();
     verify_binary_bvh(binary, primitives.data(), primitives.size(),
-                      binary_leaf_size_of(parameters, tree_.width), memory_);
+                      binary_leaf_size_of(parameters, tree_.width), memory_, &triangles);
   }
   return binary;
 }
@@ -145,6 +146,7 @@ void CommittedScene::describe() {
   info_.node_fill = ratio(tree_.used_slots, tree_.node_count * tree_.width);
   info_.leaf_fill = ratio(tree_.used_lanes, tree_.leaf_block_count * tree_.leaf_width);
   info_.sah_cost = tree_.sah_cost;
+  info_.reference_count = tree_.used_lanes;
 }
 
 void CommittedScene::validate() const {

@@ -10,9 +10,11 @@
 #include "builders/mini_tree_builder.h"
 #include "builders/oibvh_builder.h"
 #include "builders/ploc_builder.h"
+#include "builders/spatial_split_builder.h"
 #include "builders/str_builder.h"
 #include "builders/sweep_sah_builder.h"
 #include "bvh/tree_edit.h"
+#include "core/error.h"
 #include "optimizers/reinsertion.h"
 #include "optimizers/rotation.h"
 
@@ -29,6 +31,7 @@ constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_LBVH, "lbvh"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_PLOC, "ploc"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_SWEEP_SAH, "sweep_sah"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_SPATIAL_SPLIT, "spatial_split"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_AGGLOMERATIVE, "agglomerative"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_AAC, "aac"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_MINI_TREE, "mini_tree"},
@@ -59,9 +62,16 @@ BinnedSahBuilder::Config binned_sah_config(const SceneParameters& parameters, ui
   return {sah_config(parameters, width), parameters.whole(KIWAMI_PARAMETER_BIN_COUNT)};
 }
 
+SpatialSplitBuilder::Config spatial_split_config(const SceneParameters& parameters,
+                                                 uint32_t width) {
+  return {sah_config(parameters, width), parameters.whole(KIWAMI_PARAMETER_BIN_COUNT),
+          parameters[KIWAMI_PARAMETER_SPLIT_BUDGET], parameters[KIWAMI_PARAMETER_SPLIT_ALPHA]};
+}
+
 /// Whether a builder makes leaves of several primitives where that is cheaper.
 bool makes_leaves(uint32_t builder) {
-  return builder == KIWAMI_BUILDER_BINNED_SAH || builder == KIWAMI_BUILDER_SWEEP_SAH;
+  return builder == KIWAMI_BUILDER_BINNED_SAH || builder == KIWAMI_BUILDER_SWEEP_SAH ||
+         builder == KIWAMI_BUILDER_SPATIAL_SPLIT;
 }
 
 AacBuilder::Config aac_config(const SceneParameters& parameters) {
@@ -70,8 +80,9 @@ AacBuilder::Config aac_config(const SceneParameters& parameters) {
 }
 
 /// One call of the chosen builder.
-BinaryBvh run_builder(Array<BuildPrimitive> primitives, const SceneParameters& parameters,
-                      uint32_t width, Memory& memory, const Parallel& parallel) {
+BinaryBvh run_builder(Array<BuildPrimitive> primitives, const TriangleSource& source,
+                      const SceneParameters& parameters, uint32_t width, Memory& memory,
+                      const Parallel& parallel) {
   switch (parameters.whole(KIWAMI_PARAMETER_BUILDER)) {
     case KIWAMI_BUILDER_LBVH:
       return LbvhBuilder::build(std::move(primitives), {}, memory, parallel);
@@ -80,6 +91,13 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const SceneParameters& p
     case KIWAMI_BUILDER_SWEEP_SAH:
       return SweepSahBuilder::build(std::move(primitives), sah_config(parameters, width), memory,
                                     parallel);
+    case KIWAMI_BUILDER_SPATIAL_SPLIT:
+      if (source.mesh_count == 0 && !primitives.empty()) {
+        throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                    "the builder spatial_split cuts triangles, expected a mesh in place of boxes");
+      }
+      return SpatialSplitBuilder::build(std::move(primitives), source,
+                                        spatial_split_config(parameters, width), memory, parallel);
     case KIWAMI_BUILDER_AGGLOMERATIVE:
       return AgglomerativeBuilder::build(std::move(primitives), {}, memory, parallel);
     case KIWAMI_BUILDER_AAC:
@@ -156,11 +174,11 @@ WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t widt
   return config;
 }
 
-BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource&,
+BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource& source,
                            const SceneParameters& parameters, uint32_t width, Memory& memory,
                            const Parallel& parallel) {
   const SahCosts costs = costs_of(parameters, width);
-  BinaryBvh bvh = run_builder(std::move(primitives), parameters, width, memory, parallel);
+  BinaryBvh bvh = run_builder(std::move(primitives), source, parameters, width, memory, parallel);
   for (const uint32_t method : parameters.optimizers()) {
     run_optimizer(method, bvh, memory, parallel);
   }

@@ -25,7 +25,8 @@ struct TraversalCounters {
   uint64_t leaf_visits;
   uint64_t accepted;           ///< triangles accepted on the way
   uint64_t margin_violations;  ///< accepted hits that lie before the ray enters their own leaf's
-                               ///< box; any other number than 0 is a defect of the margin
+                               ///< box, or, where triangles stand in several leaves, in no box of
+                               ///< theirs; any other number than 0 is a defect of the margin
   uint64_t double_fallbacks;   ///< edge functions decided in double precision
 };
 

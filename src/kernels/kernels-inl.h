@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/packet-inl.h"
+#include "kernels/places-inl.h"
 
 namespace kiwami {
 namespace KIWAMI_ISA {
@@ -129,7 +130,7 @@ void trace(const SceneView& scene, const RayBatch& batch) {
 
 template <typename Query, int N>
 void trace_counted(const SceneView& scene, const RayBatch& batch, TraversalCounters& counters) {
-  CountingProbe probe{counters};
+  CountingProbe<N> probe{counters};
   for (size_t i = 0; i < batch.count; ++i) {
     write_answer(batch, i, trace_one<Query, N>(scene, ray_of(batch, i), probe));
   }

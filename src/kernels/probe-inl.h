@@ -2,7 +2,7 @@
 // What a traversal reports of itself: nothing, or counts.
 #pragma once
 
-#include "kernels/kernel_table.h"
+#include "kernels/ray-inl.h"
 
 namespace kiwami {
 namespace KIWAMI_ISA {
@@ -13,12 +13,14 @@ struct NoProbe {
 
   void on_node() {}
   void on_leaf(float) {}
-  void on_accept(float) {}
+  void on_accept(const SceneView&, const ScalarRay&, uint32_t, float) {}
   void on_double_fallback() {}
 };
 
 /// Counts, and checks what the order of visits rests on: no accepted hit lies before the distance
-/// at which the ray enters the box of its own leaf.
+/// at which the ray enters the box of its own leaf; in a tree that has duplicates, that some leaf
+/// of its triangle holds it.
+template <int N>
 struct CountingProbe {
   static constexpr bool kNeedsEntry = true;
 
@@ -30,10 +32,7 @@ struct CountingProbe {
     ++counters.leaf_visits;
     leaf_entry = entry;
   }
-  void on_accept(float scaled_t) {
-    ++counters.accepted;
-    if (scaled_t < leaf_entry) ++counters.margin_violations;
-  }
+  void on_accept(const SceneView& scene, const ScalarRay& ray, uint32_t id, float t);
   void on_double_fallback() { ++counters.double_fallbacks; }
 };
 

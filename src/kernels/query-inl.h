@@ -60,7 +60,7 @@ struct QueryBase {
       const float t = crossings.t[lane];
       if (!(scalar->tmin <= t && t <= scalar->tmax)) continue;
       if (!is_visible(*scene, *scalar, leaf.id[lane], crossings.sum[lane])) continue;
-      probe.on_accept(scaled_upper(*scalar, t));
+      probe.on_accept(*scene, *scalar, leaf.id[lane], t);
       if (accept(lane, crossings)) return true;
     }
     return false;
@@ -157,6 +157,13 @@ struct AnyHitQuery : QueryBase<N> {
   uint8_t answer() const { return is_hit ? 1 : 0; }
 };
 
+/// Of a tree that has duplicates: whether the lane is the first, in memory, of those lanes of its
+/// triangle whose leaves the ray is in at the distance t. Every traversal that finds the hit visits
+/// all of these.
+template <int N>
+bool is_first_place(const SceneView& scene, const ScalarRay& ray, const LeafBlock<N>& leaf,
+                    int lane, float t);
+
 /// How many triangles the ray meets between tmin and tmax.
 template <int N>
 struct AllHitsQuery : QueryBase<N> {
@@ -172,8 +179,12 @@ struct AllHitsQuery : QueryBase<N> {
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
-    this->for_each_hit(leaf, lanes, probe, [&](int, const Crossings<N>&) {
-      ++count;
+    this->for_each_hit(leaf, lanes, probe, [&](int lane, const Crossings<N>& crossings) {
+      const SceneView& view = *this->scene;
+      if (view.tree.has_duplicates == 0 ||
+          is_first_place(view, *this->scalar, leaf, lane, crossings.t[lane])) {
+        ++count;
+      }
       return false;
     });
     return false;

@@ -60,4 +60,13 @@ struct Bounds {
   }
 };
 
+/// What two boxes have in common; empty (see is_empty) where they share no point.
+inline Bounds intersection_of(Bounds a, const Bounds& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    a.lower[axis] = max_keep(a.lower[axis], b.lower[axis]);
+    a.upper[axis] = min_keep(a.upper[axis], b.upper[axis]);
+  }
+  return a;
+}
+
 }  // namespace kiwami

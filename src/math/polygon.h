@@ -16,13 +16,25 @@ struct Point3d {
 /// The part of a triangle that lies within boxes: convex, with its own box.
 class ClippedTriangle {
  public:
-  explicit ClippedTriangle(const Vec3f corner[3]) : count_(3) {
-    for (int k = 0; k < 3; ++k) points_[k] = {{corner[k].x, corner[k].y, corner[k].z}};
+  explicit ClippedTriangle(const Vec3f corner[3]) : ClippedTriangle(corner, {0, 0, 0}) {}
+
+  /// With coordinates relative to origin.
+  ClippedTriangle(const Vec3f corner[3], const Vec3f& origin) : count_(3) {
+    for (int k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        points_[k].at[axis] = static_cast<double>(corner[k][axis]) - origin[axis];
+      }
+    }
     update_bounds();
   }
 
+  bool is_empty() const { return count_ == 0; }
+  double lower(int axis) const { return lower_[axis]; }
+  double upper(int axis) const { return upper_[axis]; }
+
   /// Whether its own box shares a point with the closed box.
-  bool may_overlap(const float box_lower[3], const float box_upper[3]) const {
+  template <typename Number>
+  bool may_overlap(const Number box_lower[3], const Number box_upper[3]) const {
     for (int axis = 0; axis < 3; ++axis) {
       if (!(lower_[axis] <= box_upper[axis] && box_lower[axis] <= upper_[axis])) return false;
     }
@@ -39,6 +51,12 @@ class ClippedTriangle {
       if (upper_[axis] > box_upper[axis]) is_cut |= cut(axis, box_upper[axis], -1.0);
     }
     if (is_cut) update_bounds();
+  }
+
+  /// Keeps what lies on one side of a plane, in the same way: above it for a sign of 1, below it
+  /// for -1.
+  void clip(int axis, double plane, double sign) {
+    if (cut(axis, plane, sign)) update_bounds();
   }
 
   double area() const {

@@ -15,6 +15,13 @@ inline float next_up(float value) {
 }
 inline float next_down(float value) { return -next_up(-value); }
 
+/// A double within the range of floats, rounded towards -infinity (+infinity).
+inline float round_down(double value) {
+  const float rounded = static_cast<float>(value);
+  return static_cast<double>(rounded) > value ? next_down(rounded) : rounded;
+}
+inline float round_up(double value) { return -round_down(-value); }
+
 /// a - b rounded towards -infinity (+infinity), for finite a and b.
 inline float subtract_down(float a, float b) {
   const double wide_a = a, wide_b = b;

@@ -88,6 +88,10 @@ class ContractionWalk {
       throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "leaf %u owns %u triangles, expected at most %u",
                   chosen.binary_node, count, kMaxLeafSize);
     }
+    if (binary_.has_duplicates) {
+      uint32_t ids[kMaxLeafSize];
+      count = static_cast<uint32_t>(copy_ids_below(binary_, chosen.binary_node, ids) - ids);
+    }
     result_.leaf_area += binary_.nodes[chosen.binary_node].bounds.half_area();
     slots_.push_back({chosen.binary_node, kLeafFlag | static_cast<uint32_t>(leaf_sizes_.size())});
     leaf_sizes_.push_back(static_cast<uint8_t>(count));

@@ -147,15 +147,13 @@ struct ContractionView {
     return contraction.leaf_sizes[contraction.slots[slot].child & ~kLeafFlag];
   }
   void copy_primitives(uint32_t slot, uint32_t* to) const {
-    for_each_leaf(binary, contraction.slots[slot].binary_node, [&](const BinaryNode& leaf) {
-      to = std::copy_n(binary.primitive_ids.begin() + leaf.first, leaf.count, to);
-    });
+    copy_ids_below(binary, contraction.slots[slot].binary_node, to);
   }
 };
 
 /// The nodes of a tree whose nodes have one parent each; root names the first of them.
 template <typename Tree>
-FlatTree flatten_unshared(const Tree& tree, uint32_t root, size_t primitive_count, Memory& memory) {
+FlatTree flatten_unshared(const Tree& tree, uint32_t root, Memory& memory) {
   GrowingArray<kiwami_bvh_node> nodes(memory);
   GrowingArray<uint32_t> names(memory);  // in the tree, by node
   uint32_t inner_count = 0, leaf_count = 0;
@@ -187,8 +185,9 @@ FlatTree flatten_unshared(const Tree& tree, uint32_t root, size_t primitive_coun
     nodes[i].storage_mask = (1u << nodes[i].child_count) - 1;
     for (uint32_t c = 0; c < tree.child_count(name); ++c) add(tree.child(name, c), i, depth + 1);
   }
-  FlatTree flat{nodes.take(), Array<uint32_t>(memory, primitive_count)};
+  FlatTree flat{nodes.take(), {}};
   number_primitives(flat.nodes);
+  flat.primitive_ids = Array<uint32_t>(memory, flat.nodes[0].primitive_count);
   for (size_t i = 0; i < flat.nodes.size(); ++i) {
     if (flat.nodes[i].child_count != 0) continue;
     tree.copy_primitives(names[i], flat.primitive_ids.data() + flat.nodes[i].first_primitive);
@@ -200,12 +199,11 @@ FlatTree flatten_unshared(const Tree& tree, uint32_t root, size_t primitive_coun
 
 FlatTree flatten(const BinaryBvh& binary, Memory& memory) {
   if (binary.nodes.empty()) return {};
-  return flatten_unshared(BinaryView{binary}, 0, binary.primitive_ids.size(), memory);
+  return flatten_unshared(BinaryView{binary}, 0, memory);
 }
 
 FlatTree flatten(const Contraction& contraction, const BinaryBvh& binary, Memory& memory) {
-  return flatten_unshared(ContractionView{contraction, binary}, 0, binary.primitive_ids.size(),
-                          memory);
+  return flatten_unshared(ContractionView{contraction, binary}, 0, memory);
 }
 
 FlatTree flatten(const WideTree& tree, Memory& memory) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstring>
 
+#include "bvh/triangle_cover.h"
 #include "core/error.h"
 #include "math/rounding.h"
 #include "wide/wide_tree.h"
@@ -24,12 +26,14 @@ class WideVerifier {
                Memory& memory)
       : tree_(tree),
         source_(source),
+        memory_(memory),
         primitive_count_(primitive_count),
         nodes_(tree.nodes<N>()),
         leaves_(tree.leaves<N>()),
         owned_slots_(memory, tree.node_count),
         owned_lanes_(memory, tree.leaf_block_count),
         has_triangle_(memory, id_count(source)),
+        parts_(memory),
         stack_(memory) {
     owned_slots_.fill_zero();
     owned_lanes_.fill_zero();
@@ -40,6 +44,7 @@ class WideVerifier {
     check_sizes();
     check_view();
     if (tree_.view.root.mask() != 0) walk();
+    check_parts();
     check_unused();
     check_totals();
   }
@@ -50,6 +55,13 @@ class WideVerifier {
     ChildReference reference;
     uint32_t depth;
     uint32_t parent;
+    Bounds box;
+  };
+
+  /// A leaf around a part of a triangle.
+  struct Part {
+    uint32_t id;
+    uint32_t block;
     Bounds box;
   };
 
@@ -154,23 +166,39 @@ class WideVerifier {
   void visit_leaf(const Visit& visit) {
     const uint32_t index = claim("leaf block", visit, tree_.leaf_block_count, sizeof(LeafBlock<N>),
                                  tree_.node_bytes(), owned_lanes_);
+    const LeafBlock<N>& leaf = leaves_[index];
     for (uint32_t mask = visit.reference.mask(); mask != 0; mask &= mask - 1) {
-      check_triangle(index, std::countr_zero(mask), visit.box);
+      const int lane = std::countr_zero(mask);
+      check_id(index, lane);
+      for (uint32_t rest = mask & (mask - 1); rest != 0; rest &= rest - 1) {
+        if (leaf.id[std::countr_zero(rest)] != leaf.id[lane]) continue;
+        fail("triangle %u stands in two lanes of one leaf in leaf block %u", leaf.id[lane], index);
+      }
+      check_triangle(index, lane, visit.box);
       ++used_lanes_;
     }
+  }
+
+  void check_id(uint32_t block, int lane) {
+    const uint32_t id = leaves_[block].id[lane];
+    if (id >= has_triangle_.size()) {
+      fail("lane %d of leaf block %u has id %u, expected below %zu", lane, block, id,
+           has_triangle_.size());
+    }
+    if (has_triangle_[id] && !tree_.view.has_duplicates) {
+      fail("triangle %u stands in two lanes", id);
+    }
+    if (has_triangle_[id]) return;
+    has_triangle_[id] = kInParts;
+    ++triangle_count_;
   }
 
   void check_triangle(uint32_t block, int lane, const Bounds& box) {
     const LeafBlock<N>& leaf = leaves_[block];
     const uint32_t id = leaf.id[lane];
-    if (id >= has_triangle_.size()) {
-      fail("lane %d of leaf block %u has id %u, expected below %zu", lane, block, id,
-           has_triangle_.size());
-    }
-    if (has_triangle_[id]) fail("triangle %u stands in two lanes", id);
-    has_triangle_[id] = 1;
     Vec3f corner[3];
     source_.corners_of(id, corner);
+    bool is_part = false;
     for (int vertex = 0; vertex < 3; ++vertex) {
       for (int axis = 0; axis < 3; ++axis) {
         const float original = corner[vertex][axis];
@@ -180,10 +208,39 @@ class WideVerifier {
                block);
         }
         const float centre = tree_.view.centre[axis];
-        if (!(box.lower[axis] <= subtract_down(original, centre) &&
-              subtract_up(original, centre) <= box.upper[axis])) {
+        if (box.lower[axis] <= subtract_down(original, centre) &&
+            subtract_up(original, centre) <= box.upper[axis]) {
+          continue;
+        }
+        is_part = true;
+        if (!tree_.view.has_duplicates) {
           fail("triangle %u in leaf block %u leaves its box on axis %d", id, block, axis);
         }
+      }
+    }
+    if (is_part) {
+      parts_.push_back({id, block, box});
+    } else {
+      has_triangle_[id] = kWhole;
+    }
+  }
+
+  /// Of each triangle that no leaf box holds, the boxes around its parts must cover it.
+  void check_parts() {
+    Array<Part> parts = parts_.take();
+    std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+      return a.id < b.id || (a.id == b.id && a.block < b.block);
+    });
+    for (const Part *begin = parts.begin(), *end = begin; begin != parts.end(); begin = end) {
+      while (end != parts.end() && end->id == begin->id) ++end;
+      if (has_triangle_[begin->id] == kWhole) continue;
+      Array<Bounds> boxes(memory_, static_cast<size_t>(end - begin));
+      for (size_t i = 0; i < boxes.size(); ++i) boxes[i] = begin[i].box;
+      Vec3f corner[3];
+      source_.corners_of(begin->id, corner);
+      if (!is_covered(corner, tree_.view.centre, {boxes.data(), boxes.size()})) {
+        fail("the boxes of leaves do not cover triangle %u, which stands in leaf block %u",
+             begin->id, begin->block);
       }
     }
   }
@@ -228,7 +285,7 @@ class WideVerifier {
     } totals[] = {{"used slots", tree_.used_slots, used_slots_},
                   {"used lanes", tree_.used_lanes, used_lanes_},
                   {"levels", tree_.depth, depth_},
-                  {"triangles", primitive_count_, used_lanes_}};
+                  {"triangles", primitive_count_, triangle_count_}};
     for (const auto& total : totals) {
       if (total.stated != total.counted) {
         fail("the tree has %llu %s, expected %llu", static_cast<unsigned long long>(total.counted),
@@ -239,15 +296,21 @@ class WideVerifier {
 
   const WideTree& tree_;
   const TriangleSource& source_;
+  Memory& memory_;
   uint64_t primitive_count_;
   const WideNode<N>* nodes_;
   const LeafBlock<N>* leaves_;
   Array<uint16_t> owned_slots_;
   Array<uint16_t> owned_lanes_;
+  /// Of has_triangle_, for a triangle that stands in some lane.
+  static constexpr uint8_t kInParts = 1, kWhole = 2;
+
   Array<uint8_t> has_triangle_;
+  GrowingArray<Part> parts_;
   GrowingArray<Visit> stack_;
   uint64_t used_slots_ = 0;
   uint64_t used_lanes_ = 0;
+  uint64_t triangle_count_ = 0;
   uint32_t depth_ = 0;
 };
 

@@ -76,8 +76,9 @@ struct TreeView {
   ChildReference root;          ///< with a mask of 0: nothing to hit
   Vec3f centre;                 ///< boxes are relative to it
   float centre_padding;         ///< 0; four floats are read at once
-  Vec3f greatest_bound;  ///< per axis, the greatest absolute box coordinate in the stored frame
-  float bound_padding;   ///< 0
+  Vec3f greatest_bound;     ///< per axis, the greatest absolute box coordinate in the stored frame
+  float bound_padding;      ///< 0
+  uint32_t has_duplicates;  ///< 1: a triangle may stand in several leaves
 };
 
 /// Maps a running triangle id to its geometry. Plain data.

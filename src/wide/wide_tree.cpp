@@ -60,21 +60,20 @@ Contents extract_contents(const BinaryBvh& binary, const Contraction& contractio
   const Array<ContractedSlot>& slots = contraction.slots;
   Contents contents{Array<Bounds>(memory, slots.size()),
                     Array<uint32_t>(memory, contraction.leaf_sizes.size()),
-                    Array<uint32_t>(memory, binary.primitive_ids.size())};
+                    {}};
   uint32_t next = 0;
   for (size_t leaf = 0; leaf < contraction.leaf_sizes.size(); ++leaf) {
     contents.first_primitive[leaf] = next;
     next += contraction.leaf_sizes[leaf];
   }
+  contents.primitive_ids = Array<uint32_t>(memory, next);
   parallel.for_blocks(slots.size(), kPackingBlock, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       contents.boxes[i] = binary.nodes[slots[i].binary_node].bounds;
       if (!slots[i].is_leaf()) continue;
       uint32_t* to =
           contents.primitive_ids.data() + contents.first_primitive[slots[i].child & ~kLeafFlag];
-      for_each_leaf(binary, slots[i].binary_node, [&](const BinaryNode& leaf) {
-        to = std::copy_n(binary.primitive_ids.begin() + leaf.first, leaf.count, to);
-      });
+      copy_ids_below(binary, slots[i].binary_node, to);
     }
   });
   return contents;
@@ -244,10 +243,11 @@ WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
   set_frame(root_box, tree.view);
   tree.view.root = reference_of(contraction.slots[0], layout, tree);
   tree.used_slots = contraction.slots.size() - 1;
-  tree.used_lanes = binary.primitive_ids.size();
+  tree.view.has_duplicates = binary.has_duplicates ? 1 : 0;
   tree.depth = contraction.depth;
   tree.sah_cost = sah_cost_of(contraction, root_box.half_area(), config);
   const Contents contents = extract_contents(binary, contraction, memory, parallel);
+  tree.used_lanes = contents.primitive_ids.size();
   binary = BinaryBvh();
   switch (config.width) {
     case 4:

@@ -74,7 +74,9 @@ WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
 
 /// Checks every invariant of the tree: references and depth in range; each slot and lane owned by
 /// exactly one path; boxes (in the stored frame, rounded outwards) around all below; each of the
-/// primitive_count triangles in exactly one lane, with its original vertices; the root's view.
+/// primitive_count triangles in exactly one lane, with its original vertices; the root's view. In
+/// a tree that has_duplicates a triangle may stand in several leaves, in each once: their boxes
+/// together cover it.
 /// Throws Error(VALIDATION) that names the node.
 void verify_wide_tree(const WideTree& tree, const TriangleSource& source, uint64_t primitive_count,
                       Memory& memory);

@@ -62,6 +62,13 @@ Bvh bvh_of(const Scene& scene) {
   return Bvh(bvh);
 }
 
+kiwami_scene_info info_of(const Scene& scene) {
+  kiwami_scene_info info{};
+  info.struct_size = sizeof info;
+  EXPECT_EQ(kiwami_scene_get_info(scene.get(), &info), KIWAMI_OK) << last_error();
+  return info;
+}
+
 kiwami_bvh_info info_of(const Bvh& bvh) {
   kiwami_bvh_info info{};
   info.struct_size = sizeof info;

@@ -37,6 +37,7 @@ Geometry make_mesh(const Device& device, const kiwami_triangle_mesh_desc& desc);
 Scene make_scene(const Device& device);
 /// A committed scene of one geometry.
 Scene make_scene(const Device& device, const Geometry& geometry);
+kiwami_scene_info info_of(const Scene& scene);
 /// The tree of a committed scene, and what is in it.
 Bvh bvh_of(const Scene& scene);
 kiwami_bvh_info info_of(const Bvh& bvh);

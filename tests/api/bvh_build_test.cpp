@@ -373,6 +373,9 @@ TEST_F(BvhBuildTest, BadArguments) {
   parameter = {KIWAMI_PARAMETER_BIN_COUNT, 0, 1e9};
   expect_error(desc, KIWAMI_ERROR_INVALID_ARGUMENT,
                "value is 1e+09 for parameter 4, expected 4 to 32");
+  parameter = {KIWAMI_PARAMETER_BUILDER, 0, KIWAMI_BUILDER_SPATIAL_SPLIT};
+  expect_error(desc, KIWAMI_ERROR_INVALID_ARGUMENT,
+               "the builder spatial_split cuts triangles, expected a mesh in place of boxes");
   desc = good;
   const uint32_t unknown = 200;
   desc.optimizers = &unknown;

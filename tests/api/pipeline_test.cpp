@@ -83,6 +83,29 @@ TEST_F(Pipeline, EveryMethodGivesTheSameAnswers) {
   }
 }
 
+TEST_F(Pipeline, SpatialSplitsKeepWithinTheirBudget) {
+  const Triangles triangles = random_triangles(400, 3);
+  const Geometry mesh = make_mesh(device_, triangles.desc());
+  const auto references = [&](uint32_t builder, double budget) {
+    const Scene scene = make_scene(device_);
+    EXPECT_EQ(kiwami_scene_attach(scene.get(), mesh.get(), nullptr), KIWAMI_OK);
+    set(scene, KIWAMI_PARAMETER_VALIDATE_BUILD, 1);
+    set(scene, KIWAMI_PARAMETER_BUILDER, builder);
+    set(scene, KIWAMI_PARAMETER_SPLIT_BUDGET, budget);
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error(device_.get());
+    EXPECT_EQ(info_of(scene).triangle_count, 400u);
+    return info_of(scene).reference_count;
+  };
+  EXPECT_EQ(references(KIWAMI_BUILDER_BINNED_SAH, 4.0), 400u);
+  EXPECT_EQ(references(KIWAMI_BUILDER_SPATIAL_SPLIT, 0.0), 400u);
+  const uint64_t few = references(KIWAMI_BUILDER_SPATIAL_SPLIT, 0.1);
+  const uint64_t many = references(KIWAMI_BUILDER_SPATIAL_SPLIT, 1.0);
+  EXPECT_GT(few, 400u);
+  EXPECT_LE(few, 440u);
+  EXPECT_GE(many, few);
+  EXPECT_LE(many, 800u);
+}
+
 TEST_F(Pipeline, ErrorsNameWhatIsWrong) {
   const Scene scene = make_scene(device_);
   const uint32_t methods[KIWAMI_MAX_OPTIMIZERS + 1] = {200};

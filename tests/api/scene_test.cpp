@@ -24,13 +24,6 @@ void commit(const Scene& scene) {
   EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
 }
 
-kiwami_scene_info info_of(const Scene& scene) {
-  kiwami_scene_info info{};
-  info.struct_size = sizeof info;
-  EXPECT_EQ(kiwami_scene_get_info(scene.get(), &info), KIWAMI_OK) << last_error();
-  return info;
-}
-
 class SceneTest : public testing::Test {
  protected:
   Geometry square_at(float z) { return make_mesh(device_, square(z).desc()); }

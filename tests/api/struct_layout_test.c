@@ -121,7 +121,7 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_device_info, thread_count, 24);
   FIELD(kiwami_device_info, reserved, 28);
 
-  SIZE(kiwami_scene_info, 136);
+  SIZE(kiwami_scene_info, 144);
   FIELD(kiwami_scene_info, struct_size, 0);
   FIELD(kiwami_scene_info, bvh_width, 4);
   FIELD(kiwami_scene_info, leaf_width, 8);
@@ -140,6 +140,7 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_scene_info, build_seconds, 104);
   FIELD(kiwami_scene_info, bounds_min, 112);
   FIELD(kiwami_scene_info, bounds_max, 124);
+  FIELD(kiwami_scene_info, reference_count, 136);
 
   SIZE(kiwami_query, 8);
   FIELD(kiwami_query, struct_size, 0);
@@ -295,6 +296,8 @@ static void check_numbers(void) {
   expect("KIWAMI_PARAMETER_VALIDATE_BUILD", KIWAMI_PARAMETER_VALIDATE_BUILD, 8);
   expect("KIWAMI_PARAMETER_CONTRACTION", KIWAMI_PARAMETER_CONTRACTION, 9);
   expect("KIWAMI_PARAMETER_BUILDER", KIWAMI_PARAMETER_BUILDER, 10);
+  expect("KIWAMI_PARAMETER_SPLIT_BUDGET", KIWAMI_PARAMETER_SPLIT_BUDGET, 11);
+  expect("KIWAMI_PARAMETER_SPLIT_ALPHA", KIWAMI_PARAMETER_SPLIT_ALPHA, 12);
   expect("KIWAMI_PARAMETER_AAC_QUALITY", KIWAMI_PARAMETER_AAC_QUALITY, 17);
 }
 

@@ -97,6 +97,7 @@ SceneHandle make_scene(kiwami_device* device, const Scene& scene, const BuildOpt
   set(KIWAMI_PARAMETER_MERGE_LEAVES, options.merges_leaves ? 1.0 : 0.0);
   set(KIWAMI_PARAMETER_MAX_LEAF_SIZE, options.max_leaf_size);
   set(KIWAMI_PARAMETER_VALIDATE_BUILD, options.validates ? 1.0 : 0.0);
+  for (const auto& [parameter, value] : options.parameters) set(parameter, value);
   check(kiwami_scene_commit(made));
   return handle;
 }

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kiwami/kiwami.h"
@@ -36,6 +37,8 @@ struct BuildOptions {
   bool merges_leaves = true;
   uint32_t max_leaf_size = 0;  ///< 0: one full leaf block
   bool validates = false;      ///< after each stage
+  /// More of KIWAMI_PARAMETER_*, with their values.
+  std::vector<std::pair<uint32_t, double>> parameters = {};
 };
 
 /// Mesh i of the scene becomes geometry i.

@@ -34,6 +34,8 @@ constexpr struct {
                    {"validate_build", KIWAMI_PARAMETER_VALIDATE_BUILD},
                    {"contraction", KIWAMI_PARAMETER_CONTRACTION},
                    {"builder", KIWAMI_PARAMETER_BUILDER},
+                   {"split_budget", KIWAMI_PARAMETER_SPLIT_BUDGET},
+                   {"split_alpha", KIWAMI_PARAMETER_SPLIT_ALPHA},
                    {"aac_quality", KIWAMI_PARAMETER_AAC_QUALITY}};
 
 std::string parameter_names() {

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the triangles of a tree that has duplicates stand (spatial splits: a triangle in several
+// leaves, in each with the box of a part of it).
+//
+// Whether a ray hits a triangle, and at which distance, has nothing to do with boxes, so the same
+// hit may be found in each leaf of the triangle that the ray visits: also in one whose box the hit
+// point is not in. What the traversal rests on (see kernels/ray-inl.h) still holds for one of them:
+// the weights of the hit (edge functions of one sign) make a point of the triangle itself, whatever
+// the rounding of the sheared vertices; the boxes of the triangle's references together cover all
+// its points, since each cut is rounded outwards; so one of them holds this point, and the margin,
+// which is derived for any box around the point, lets the ray enter that box and all above it at or
+// before the hit's distance, and leave them at or after it.
+#pragma once
+
+#include "kernels/traversal-inl.h"
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+/// Looks for the first lane of a triangle in the leaves that a ray is in at one distance.
+template <int N>
+struct PlaceQuery {
+  static constexpr bool kOrdered = false;
+
+  float best_bound;
+  uint32_t id;
+  const LeafBlock<N>* first_leaf = nullptr;
+  int first_lane = 0;
+
+  template <typename Probe>
+  bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe&) {
+    for (; lanes; lanes &= lanes - 1) {
+      const int lane = __builtin_ctz(lanes);
+      if (leaf.id[lane] != id) continue;
+      if (first_leaf && (first_leaf < &leaf || (first_leaf == &leaf && first_lane < lane)))
+        continue;
+      first_leaf = &leaf;
+      first_lane = lane;
+    }
+    return false;
+  }
+};
+
+/// The interval is a part of every interval in which the hit is found, so a traversal for the hit
+/// visits the same leaves and others.
+template <int N>
+__attribute__((noinline)) PlaceQuery<N> find_place(const SceneView& scene, const ScalarRay& ray,
+                                                   uint32_t id, float t) {
+  SlabRay<N> slabs;
+  set_up_slabs<N>(ray, scene.tree, slabs);
+  slabs.tmin = scaled_lower(ray, t);
+  PlaceQuery<N> query{scaled_upper(ray, t), id};
+  NoProbe probe;
+  traverse<N>(scene.tree, {scene.tree.root, slabs.tmin}, slabs, query, probe);
+  return query;
+}
+
+template <int N>
+inline bool is_first_place(const SceneView& scene, const ScalarRay& ray, const LeafBlock<N>& leaf,
+                           int lane, float t) {
+  const PlaceQuery<N> place = find_place<N>(scene, ray, leaf.id[lane], t);
+  return place.first_leaf == &leaf && place.first_lane == lane;
+}
+
+template <int N>
+inline void CountingProbe<N>::on_accept(const SceneView& scene, const ScalarRay& ray, uint32_t id,
+                                        float t) {
+  ++counters.accepted;
+  const bool is_in_box = scene.tree.has_duplicates != 0
+                             ? find_place<N>(scene, ray, id, t).first_leaf != nullptr
+                             : scaled_upper(ray, t) >= leaf_entry;
+  if (!is_in_box) ++counters.margin_violations;
+}
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami
