@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "math/polygon.h"
 
@@ -78,7 +79,7 @@ class Descent {
     piece.clip(node.lower, node.upper);
     const double area = piece.area();
     if (!(area > 0.0)) return;
-    const auto share = static_cast<uint64_t>(area / surface_area_ * kWhole + 0.5);
+    const auto share = static_cast<uint64_t>(std::llround(area / surface_area_ * kWhole));
     std::atomic_ref(foreign_[index]).fetch_add(share, std::memory_order_relaxed);
     visit_children(node, piece);
   }

@@ -3,24 +3,42 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "api/api_support.h"
 
 namespace kiwami_api_tests {
 namespace {
 
+/// Writes a tree as compressed nodes.
+kiwami_result run_export(const kiwami_bvh* bvh) {
+  size_t nodes = 0, primitives = 0;
+  const kiwami_result result =
+      kiwami_bvh_export_counts(bvh, KIWAMI_EXPORT_COMPRESSED8, &nodes, &primitives);
+  if (result != KIWAMI_OK) return result;
+  std::vector<kiwami_compressed8_node> to(nodes);
+  std::vector<kiwami_bvh_primitive> names(primitives);
+  return kiwami_bvh_export(bvh, KIWAMI_EXPORT_COMPRESSED8, to.data(), nodes * sizeof to[0],
+                           names.data(), primitives);
+}
+
 /// Looks at the tree of a scene, and builds and moves another one. Returns the first error.
 kiwami_result run_trees(kiwami_device* device, const kiwami_scene* scene, kiwami_geometry* mesh) {
   kiwami_bvh* of_scene = nullptr;
   kiwami_bvh* built = nullptr;
   kiwami_bvh_desc desc;
+  const kiwami_parameter_value leaf_size = {KIWAMI_PARAMETER_MAX_LEAF_SIZE, 0, 3};
   kiwami_bvh_desc_init(&desc, sizeof desc);
   desc.geometry = mesh;
+  desc.width = 8;
+  desc.parameters = &leaf_size;
+  desc.parameter_count = 1;
   kiwami_result result = kiwami_scene_get_bvh(scene, &of_scene);
   if (result == KIWAMI_OK) result = kiwami_bvh_measure(of_scene, nullptr, nullptr, nullptr, 0);
   if (result == KIWAMI_OK) result = kiwami_bvh_build(device, &desc, &built);
   if (result == KIWAMI_OK) result = kiwami_bvh_refit(built, nullptr, 0, 0);
   if (result == KIWAMI_OK) result = kiwami_bvh_validate(built);
+  if (result == KIWAMI_OK) result = run_export(built);
   kiwami_bvh_release(of_scene);
   kiwami_bvh_release(built);
   return result;
