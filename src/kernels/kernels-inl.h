@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of one width: batches of rays, one after the other or in packets.
+// The kernels of one width: batches of rays, one after the other or together.
 #pragma once
 
-#include "kernels/packet-inl.h"
+#include "kernels/interleaved-inl.h"
 #include "kernels/places-inl.h"
+#include "kernels/ray-group-inl.h"
+#include "kernels/stream-inl.h"
 
 namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
 
-/// Rays and answers lie at any address.
-inline const UnalignedRay& ray_of(const RayBatch& batch, size_t i) {
-  return *reinterpret_cast<const UnalignedRay*>(batch.rays + i * batch.ray_stride);
-}
+/// Answers lie at any address.
 template <typename Answer>
 inline void write_answer(const RayBatch& batch, size_t i, const Answer& answer) {
   __builtin_memcpy(batch.answers + i * batch.answer_stride, &answer, sizeof answer);
@@ -37,14 +36,11 @@ inline void write_answer(const RayBatch& batch, size_t i, const kiwami_hit& hit)
 
 /// One ray that is set up, through the whole tree.
 template <typename Query, int N, typename Probe>
-inline typename Query::Answer trace_set_up(const SceneView& scene, const ScalarRay& scalar,
-                                           Probe& probe) {
-  SlabRay<N> slabs;
-  set_up_slabs<N>(scalar, scene.tree, slabs);
+inline typename Query::Answer trace_ready(const SceneView& scene, const ReadyRay& ray,
+                                          Probe& probe) {
   Query query;
-  query.begin(scene, scalar);
-  const float begin = scaled_lower(scalar, scalar.tmin);
-  traverse<N>(scene.tree, {scene.tree.root, begin}, slabs, query, probe);
+  query.begin(scene, ray);
+  traverse<N>(scene.tree, {scene.tree.root, ray.nearest}, ray, query, probe);
   return query.answer();
 }
 
@@ -52,79 +48,154 @@ template <typename Query, int N, typename Probe>
 inline typename Query::Answer trace_one(const SceneView& scene, const UnalignedRay& ray,
                                         Probe& probe) {
   if (scene.tree.root.mask() == 0 || !is_traceable(ray)) return Query::miss();
-  ScalarRay scalar;
-  set_up_scalar(ray, scalar);
-  return trace_set_up<Query, N>(scene, scalar, probe);
+  ReadyRay ready;
+  set_up(ray, scene.tree, ready);
+  return trace_ready<Query, N>(scene, ready, probe);
 }
 
-/// Rays of one octant that wait until they fill a packet.
-template <int N>
+/// Rays that are set up and wait until kSize of them are traced together, and where they stand in
+/// their batch. There is room for the rest of the group of N that completes them.
+template <int N, int kSize>
 struct Waiting {
-  static constexpr int kSize = PacketSlabs<N>::kSize;
-
   int count = 0;
-  ScalarRay rays[kSize];
-  size_t index[kSize];  ///< of the ray in its batch
-};
+  ReadyRay rays[kSize + N - 1];
+  size_t index[kSize + N - 1];
 
-template <typename Query, int N>
-inline void trace_packet(const SceneView& scene, const Waiting<N>& waiting, const RayBatch& batch) {
-  constexpr int size = PacketSlabs<N>::kSize;
-  Query queries[size];
-  for (int i = 0; i < size; ++i) queries[i].begin(scene, waiting.rays[i]);
-  PacketSlabs<N> packet;
-  set_up_packet<N>(waiting.rays, scene.tree, packet);
-  PacketTraversal<N, Query>{scene.tree, packet, queries}.run();
-  for (int i = 0; i < size; ++i) write_answer(batch, waiting.index[i], queries[i].answer());
-}
+  bool is_complete() const { return count >= kSize; }
 
-/// Traces the rays that wait: together if they fill a packet, alone otherwise.
-template <typename Query, int N>
-inline void flush(const SceneView& scene, Waiting<N>& waiting, const RayBatch& batch) {
-  if (waiting.count == waiting.kSize) {
-    trace_packet<Query, N>(scene, waiting, batch);
-  } else {
-    NoProbe probe;
-    for (int i = 0; i < waiting.count; ++i) {
-      write_answer(batch, waiting.index[i], trace_set_up<Query, N>(scene, waiting.rays[i], probe));
+  /// Takes away the first kSize.
+  void shift() {
+    count -= kSize;
+    for (int i = 0; i < count; ++i) {
+      rays[i] = rays[kSize + i];
+      index[i] = index[kSize + i];
     }
   }
-  waiting.count = 0;
-}
+};
 
-/// Traces rays of one octant together. Any-hit rays are collected from the whole batch: they gain
-/// even where they are incoherent, since a packet is in no hurry to reach the nearest hit. For the
-/// closest hit only rays that follow each other go together: those are likely to be coherent.
-template <typename Query, int N>
-__attribute__((noinline)) void trace_together(const SceneView& scene, const RayBatch& batch) {
-  Waiting<N> octants[8];
-  uint32_t last = 0;
-  for (size_t i = 0; i < batch.count; ++i) {
-    const UnalignedRay& ray = ray_of(batch, i);
-    if (!is_traceable(ray)) {
+/// Sets up the N rays from first on, each in turn in the place that waiting_of(octant) has for it.
+/// Those that can only miss are answered.
+template <typename Query, int N, typename WaitingOf>
+inline void set_up_group(const SceneView& scene, const RayBatch& batch, size_t first,
+                         WaitingOf waiting_of) {
+  RayGroup<N> group;
+  read_group<N>(batch.rays + first * batch.ray_stride, batch.ray_stride, group);
+  vfloat<N> scale;
+  judge_and_scale<N>(group, scale);
+  uint32_t signs[3];
+  for (int axis = 0; axis < 3; ++axis) signs[axis] = sign_bits(group.direction[axis]);
+  ReadyRay unused;
+  ReadyRay* places[N];
+  uint8_t backward[N];
+  for (int lane = 0; lane < N; ++lane) {
+    const size_t i = first + static_cast<size_t>(lane);
+    const auto sign = [&](int axis) { return ((signs[axis] >> lane) & 1u) << axis; };
+    backward[lane] = static_cast<uint8_t>(sign(0) | sign(1) | sign(2));
+    if (((group.traceable >> lane) & 1u) == 0 || ray_of(batch, i).mask == 0) {
+      group.unusual &= ~(1u << lane);
+      places[lane] = &unused;
       write_answer(batch, i, Query::miss());
       continue;
     }
-    const uint32_t octant = sign_bits(direction_of(ray)) & kAllAxes;
-    if (Query::kOrdered && octant != last) flush<Query, N>(scene, octants[last], batch);
-    last = octant;
-    Waiting<N>& waiting = octants[octant];
-    set_up_scalar(ray, waiting.rays[waiting.count]);
+    auto& waiting = waiting_of(backward[lane]);
     waiting.index[waiting.count] = i;
-    if (++waiting.count == waiting.kSize) flush<Query, N>(scene, waiting, batch);
+    places[lane] = &waiting.rays[waiting.count++];
   }
-  for (Waiting<N>& waiting : octants) flush<Query, N>(scene, waiting, batch);
+  write_group<N>(batch, first, scene.tree, group, scale, backward, places);
+}
+
+template <int N>
+using StreamWaiting = Waiting<N, kStreamSize>;
+
+/// Whether closest-hit rays go in streams, by what streams have shown: where their rays part soon,
+/// each finds its nearest hit quicker alone. Now and then a stream tries again.
+struct StreamChoice {
+  /// Rays that visit a node together on average, at which a stream is as quick as single rays.
+  static constexpr uint32_t kLeastTogether = 3;
+  /// Streams that go alone before one tries again.
+  static constexpr int kPause = 15;
+
+  int pause = 0;
+
+  bool take_stream() { return pause == 0 || --pause == 0; }
+  void learn(uint32_t visits, uint32_t ray_visits) {
+    if (ray_visits < kLeastTogether * visits) pause = kPause + 1;
+  }
+};
+
+/// Traces the first of the rays that wait, as many as a stream takes, together.
+template <typename Query, int N>
+inline void trace_stream(const SceneView& scene, StreamWaiting<N>& waiting, const RayBatch& batch,
+                         StreamChoice& choice) {
+  const int size = waiting.count < kStreamSize ? waiting.count : kStreamSize;
+  Query queries[kStreamSize];
+  for (int i = 0; i < size; ++i) queries[i].begin(scene, waiting.rays[i]);
+  StreamTraversal<N, Query> traversal{scene.tree, waiting.rays, queries, ~0u >> (32 - size), {}};
+  set_up_stream<N>(waiting.rays, size, traversal.slabs);
+  traversal.run();
+  if constexpr (Query::kOrdered) choice.learn(traversal.visits, traversal.ray_visits);
+  for (int i = 0; i < size; ++i) write_answer(batch, waiting.index[i], queries[i].answer());
+}
+
+/// The same, one by one.
+template <typename Query, int N>
+inline void trace_alone(const SceneView& scene, const StreamWaiting<N>& waiting,
+                        const RayBatch& batch) {
+  const int size = waiting.count < kStreamSize ? waiting.count : kStreamSize;
+  if (scene.tree.memory_bytes >= kLeastInterleavedBytes) {
+    trace_interleaved<Query, N>(scene, waiting.rays, size, [&](int i, const Query& query) {
+      write_answer(batch, waiting.index[i], query.answer());
+    });
+    return;
+  }
+  NoProbe probe;
+  for (int i = 0; i < size; ++i) {
+    write_answer(batch, waiting.index[i], trace_ready<Query, N>(scene, waiting.rays[i], probe));
+  }
+}
+
+/// Traces the rays from first on one by one.
+template <typename Query, int N>
+inline void trace_singly(const SceneView& scene, const RayBatch& batch, size_t first) {
+  NoProbe probe;
+  for (size_t i = first; i < batch.count; ++i) {
+    write_answer(batch, i, trace_one<Query, N>(scene, ray_of(batch, i), probe));
+  }
+}
+
+/// Collects rays by octant from the whole batch.
+template <typename Query, int N>
+__attribute__((noinline)) void trace_by_octant(const SceneView& scene, const RayBatch& batch) {
+  StreamWaiting<N> octants[8];
+  StreamChoice choice;
+  const auto trace_first = [&](StreamWaiting<N>& waiting) {
+    if (waiting.count == 0) return;
+    if (choice.take_stream()) {
+      trace_stream<Query, N>(scene, waiting, batch, choice);
+    } else {
+      trace_alone<Query, N>(scene, waiting, batch);
+    }
+  };
+  size_t first = 0;
+  for (; first + N <= batch.count; first += N) {
+    set_up_group<Query, N>(scene, batch, first,
+                           [&](uint32_t octant) -> StreamWaiting<N>& { return octants[octant]; });
+    for (StreamWaiting<N>& waiting : octants) {
+      if (!waiting.is_complete()) continue;
+      trace_first(waiting);
+      waiting.shift();
+    }
+  }
+  for (StreamWaiting<N>& waiting : octants) trace_first(waiting);
+  trace_singly<Query, N>(scene, batch, first);
 }
 
 template <typename Query, int N>
 void trace(const SceneView& scene, const RayBatch& batch) {
-  if (batch.count >= PacketSlabs<N>::kSize && scene.tree.root.mask() != 0) {
-    trace_together<Query, N>(scene, batch);
-    return;
-  }
-  NoProbe probe;
-  for (size_t i = 0; i < batch.count; ++i) {
-    write_answer(batch, i, trace_one<Query, N>(scene, ray_of(batch, i), probe));
+  if (batch.count < kStreamSize || scene.tree.root.mask() == 0) {
+    trace_singly<Query, N>(scene, batch, 0);
+  } else {
+    trace_by_octant<Query, N>(scene, batch);
   }
 }
 

@@ -21,14 +21,13 @@ __attribute__((always_inline)) inline uint32_t test_boxes(const WideNode<N>& nod
     return load<N>(reinterpret_cast<const float*>(bytes + offset));
   };
   const auto near_distance = [&](int axis) {
-    return multiply_add(planes(ray.planes->near[axis]), ray.reciprocal[axis],
-                        ray.near_offset[axis]);
+    return multiply_add(planes(ray.planes.near[axis]), ray.reciprocal[axis], ray.near_offset[axis]);
   };
   const auto far_distance = [&](int axis) {
-    return multiply_add(planes(ray.planes->far[axis]), ray.reciprocal[axis], ray.far_offset[axis]);
+    return multiply_add(planes(ray.planes.far[axis]), ray.reciprocal[axis], ray.far_offset[axis]);
   };
-  entry =
-      max(max(near_distance(0), near_distance(1)), max(near_distance(2), broadcast<N>(ray.tmin)));
+  entry = max(max(near_distance(0), near_distance(1)),
+              max(near_distance(2), broadcast<N>(ray.nearest)));
   const vfloat<N> exit =
       min(min(far_distance(0), far_distance(1)), min(far_distance(2), broadcast<N>(best)));
   return less_equal(entry, exit);

@@ -45,26 +45,25 @@ struct PlaceQuery {
 /// The interval is a part of every interval in which the hit is found, so a traversal for the hit
 /// visits the same leaves and others.
 template <int N>
-__attribute__((noinline)) PlaceQuery<N> find_place(const SceneView& scene, const ScalarRay& ray,
+__attribute__((noinline)) PlaceQuery<N> find_place(const SceneView& scene, const ReadyRay& ray,
                                                    uint32_t id, float t) {
-  SlabRay<N> slabs;
-  set_up_slabs<N>(ray, scene.tree, slabs);
-  slabs.tmin = scaled_lower(ray, t);
+  ReadyRay at_hit = ray;
+  at_hit.nearest = scaled_lower(ray, t);
   PlaceQuery<N> query{scaled_upper(ray, t), id};
   NoProbe probe;
-  traverse<N>(scene.tree, {scene.tree.root, slabs.tmin}, slabs, query, probe);
+  traverse<N>(scene.tree, {scene.tree.root, at_hit.nearest}, at_hit, query, probe);
   return query;
 }
 
 template <int N>
-inline bool is_first_place(const SceneView& scene, const ScalarRay& ray, const LeafBlock<N>& leaf,
+inline bool is_first_place(const SceneView& scene, const ReadyRay& ray, const LeafBlock<N>& leaf,
                            int lane, float t) {
   const PlaceQuery<N> place = find_place<N>(scene, ray, leaf.id[lane], t);
   return place.first_leaf == &leaf && place.first_lane == lane;
 }
 
 template <int N>
-inline void CountingProbe<N>::on_accept(const SceneView& scene, const ScalarRay& ray, uint32_t id,
+inline void CountingProbe<N>::on_accept(const SceneView& scene, const ReadyRay& ray, uint32_t id,
                                         float t) {
   ++counters.accepted;
   const bool is_in_box = scene.tree.has_duplicates != 0

@@ -13,7 +13,7 @@ struct NoProbe {
 
   void on_node() {}
   void on_leaf(float) {}
-  void on_accept(const SceneView&, const ScalarRay&, uint32_t, float) {}
+  void on_accept(const SceneView&, const ReadyRay&, uint32_t, float) {}
   void on_double_fallback() {}
 };
 
@@ -32,7 +32,7 @@ struct CountingProbe {
     ++counters.leaf_visits;
     leaf_entry = entry;
   }
-  void on_accept(const SceneView& scene, const ScalarRay& ray, uint32_t id, float t);
+  void on_accept(const SceneView& scene, const ReadyRay& ray, uint32_t id, float t);
   void on_double_fallback() { ++counters.double_fallbacks; }
 };
 

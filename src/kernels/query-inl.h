@@ -20,7 +20,7 @@ inline const GeometryRange& range_of(const SceneView& scene, uint32_t id) {
 
 /// Whether the ray may meet the triangle at all, by masks and by the side that it shows. A positive
 /// determinant is a triangle seen from its front.
-inline bool is_visible(const SceneView& scene, const ScalarRay& ray, uint32_t id,
+inline bool is_visible(const SceneView& scene, const ReadyRay& ray, uint32_t id,
                        double determinant) {
   if (ray.flags != 0) {
     const uint32_t side =
@@ -34,15 +34,13 @@ inline bool is_visible(const SceneView& scene, const ScalarRay& ray, uint32_t id
 template <int N>
 struct QueryBase {
   const SceneView* scene;
-  const ScalarRay* scalar;
-  float nearest_bound;  ///< scaled and widened: rejects triangles before their distance is known
-  float best_bound;     ///< the same for the far end; the closest hit draws it nearer
+  const ReadyRay* ray;
+  float best_bound;  ///< scaled and widened; the closest hit draws it nearer
 
-  void begin(const SceneView& scene_view, const ScalarRay& ray) {
+  void begin(const SceneView& scene_view, const ReadyRay& ready) {
     scene = &scene_view;
-    scalar = &ray;
-    nearest_bound = scaled_lower(ray, ray.tmin);
-    best_bound = scaled_upper(ray, ray.tmax);
+    ray = &ready;
+    best_bound = ready.farthest;
   }
 
   /// Calls accept(lane, crossings) for each visible triangle of the lanes that the ray meets
@@ -50,17 +48,17 @@ struct QueryBase {
   template <typename Probe, typename Accept>
   bool for_each_hit(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe, Accept accept) {
     ShearedBlock<N> sheared;
-    uint32_t inside = test_inside<N>(leaf, *scalar, broadcast<N>(nearest_bound),
+    uint32_t inside = test_inside<N>(leaf, *ray, broadcast<N>(ray->nearest),
                                      broadcast<N>(best_bound), lanes, sheared, probe);
     if (inside == 0) return false;
     Crossings<N> crossings;
-    compute_crossings<N>(sheared, *scalar, inside, crossings);
+    compute_crossings<N>(sheared, *ray, inside, crossings);
     for (; inside; inside &= inside - 1) {
       const int lane = __builtin_ctz(inside);
       const float t = crossings.t[lane];
-      if (!(scalar->tmin <= t && t <= scalar->tmax)) continue;
-      if (!is_visible(*scene, *scalar, leaf.id[lane], crossings.sum[lane])) continue;
-      probe.on_accept(*scene, *scalar, leaf.id[lane], t);
+      if (!(ray->tmin <= t && t <= ray->tmax)) continue;
+      if (!is_visible(*scene, *ray, leaf.id[lane], crossings.sum[lane])) continue;
+      probe.on_accept(*scene, *ray, leaf.id[lane], t);
       if (accept(lane, crossings)) return true;
     }
     return false;
@@ -79,9 +77,9 @@ struct ClosestHitQuery : QueryBase<N> {
   int best_lane;
   double best_v, best_w, best_sum;  ///< its edge functions
 
-  void begin(const SceneView& scene_view, const ScalarRay& ray) {
-    QueryBase<N>::begin(scene_view, ray);
-    best_t = ray.tmax;
+  void begin(const SceneView& scene_view, const ReadyRay& ready) {
+    QueryBase<N>::begin(scene_view, ready);
+    best_t = ready.tmax;
     best_id = KIWAMI_INVALID_ID;
     best_leaf = nullptr;
   }
@@ -103,7 +101,7 @@ struct ClosestHitQuery : QueryBase<N> {
       }
       return false;
     });
-    if (is_nearer) this->best_bound = scaled_upper(*this->scalar, best_t);
+    if (is_nearer) this->best_bound = scaled_upper(*this->ray, best_t);
     return false;
   }
 
@@ -142,8 +140,8 @@ struct AnyHitQuery : QueryBase<N> {
 
   bool is_hit;
 
-  void begin(const SceneView& scene_view, const ScalarRay& ray) {
-    QueryBase<N>::begin(scene_view, ray);
+  void begin(const SceneView& scene_view, const ReadyRay& ready) {
+    QueryBase<N>::begin(scene_view, ready);
     is_hit = false;
   }
 
@@ -161,8 +159,8 @@ struct AnyHitQuery : QueryBase<N> {
 /// triangle whose leaves the ray is in at the distance t. Every traversal that finds the hit visits
 /// all of these.
 template <int N>
-bool is_first_place(const SceneView& scene, const ScalarRay& ray, const LeafBlock<N>& leaf,
-                    int lane, float t);
+bool is_first_place(const SceneView& scene, const ReadyRay& ray, const LeafBlock<N>& leaf, int lane,
+                    float t);
 
 /// How many triangles the ray meets between tmin and tmax.
 template <int N>
@@ -172,8 +170,8 @@ struct AllHitsQuery : QueryBase<N> {
 
   uint32_t count;
 
-  void begin(const SceneView& scene_view, const ScalarRay& ray) {
-    QueryBase<N>::begin(scene_view, ray);
+  void begin(const SceneView& scene_view, const ReadyRay& ready) {
+    QueryBase<N>::begin(scene_view, ready);
     count = 0;
   }
 
@@ -182,7 +180,7 @@ struct AllHitsQuery : QueryBase<N> {
     this->for_each_hit(leaf, lanes, probe, [&](int lane, const Crossings<N>& crossings) {
       const SceneView& view = *this->scene;
       if (view.tree.has_duplicates == 0 ||
-          is_first_place(view, *this->scalar, leaf, lane, crossings.t[lane])) {
+          is_first_place(view, *this->ray, leaf, lane, crossings.t[lane])) {
         ++count;
       }
       return false;

@@ -31,25 +31,42 @@ constexpr float kRaisedMargin = 16.0f * 0x1p-24f;
 /// 2^-96 is left as it is. A normal number, since processors are slow with others.
 constexpr float kLeastDistance = 0x1p-120f;
 
-/// The part of the set-up that no tree has a say in. Directions and distances are scaled by the
-/// power of two that brings the greatest direction component into [1, 2): so no product below can
-/// overflow, and, a power of two being exact, no result changes.
-struct ScalarRay {
-  float origin[4];      ///< x, y, z; the fourth lane is not used
-  float direction[4];   ///< scaled; the same
-  float reciprocal[4];  ///< 1 / direction, components near zero raised before
-  float ratio[4];       ///< direction / direction[kz]; those of kx and ky are the shears
-  float shear_z;        ///< 1 / direction[kz]
-  float tmin, tmax;     ///< as given, but finite: a distance that overflows is no hit
-  int kx, ky, kz;       ///< kz: axis of the greatest component; kx, ky: so that winding is kept
-  float scale;          ///< scaled distance = distance * scale
-  float slack;          ///< widens scaled distances
-  double unscale;       ///< 1 / scale
+/// A ray as traversal reads it. Directions and distances are scaled by the power of two that brings
+/// the greatest direction component into [1, 2): so no product can overflow, and, a power of two
+/// being exact, no result changes. It is made of rows of four, so that groups of rays can be turned
+/// from lanes to rows and back.
+struct alignas(64) ReadyRay {
+  // For boxes: a plane is met at bound * reciprocal + offset, less or plus the margin.
+  float reciprocal[3];  ///< 1 / direction, components near zero raised before
+  float nearest;        ///< a lower bound of tmin, scaled
+  float near_offset[3];
+  float farthest;  ///< an upper bound of tmax, scaled
+  float far_offset[3];
+  float scale;  ///< scaled distance = distance * scale
+  // For triangles.
+  float origin[3];
+  float tmin;      ///< as given, but finite: a distance that overflows is no hit
+  float ratio[3];  ///< direction / direction[kz]; those of kx and ky are the shears
+  float tmax;
+  int32_t kx, ky, kz;  ///< kz: axis of the greatest component; kx, ky: so that winding is kept
+  float shear_z;       ///< 1 / direction[kz]
   uint32_t mask, flags;
+  uint32_t backward;  ///< bit for each axis along which the ray runs backward
+  float slack;        ///< widens scaled distances
 };
+static_assert(sizeof(ReadyRay) == 128);
+
+/// Writes a row, given by the offset of its first member.
+inline void store_row(ReadyRay& ray, size_t offset, vfloat<4> row) {
+  store(reinterpret_cast<float*>(reinterpret_cast<unsigned char*>(&ray) + offset), row);
+}
 
 /// A caller's ray where it lies: at any address.
 typedef kiwami_ray UnalignedRay __attribute__((aligned(1)));
+
+inline const UnalignedRay& ray_of(const RayBatch& batch, size_t i) {
+  return *reinterpret_cast<const UnalignedRay*>(batch.rays + i * batch.ray_stride);
+}
 
 /// The first and second four floats of a ray: origin and tmin, direction and tmax.
 inline vfloat<4> origin_of(const UnalignedRay& ray) {
@@ -101,43 +118,6 @@ inline vfloat<4> scale_direction(const UnalignedRay& ray, float& scale) {
   return direction * inverse_of_power(power);
 }
 
-/// The axis of the greatest component, the lowest of equal ones, and the other two in the order
-/// that keeps the winding. Neither is branched on: directions are too mixed to be predicted.
-inline void choose_axes(vfloat<4> direction, ScalarRay& out) {
-  const vfloat<4> size = absolute(direction);
-  const int kz = __builtin_ctz(equal(size, greatest_of_three(size)));
-  const int is_negative = static_cast<int>(sign_bits(direction) >> kz) & 1;
-  // Two bits for each kz: the axis after it and the one before it; exchanged for backward rays.
-  constexpr int after = 0b001001, before = 0b010010;
-  const int entry = 6 * is_negative + 2 * kz;
-  out.kz = kz;
-  out.kx = ((before << 6 | after) >> entry) & 3;
-  out.ky = ((after << 6 | before) >> entry) & 3;
-}
-
-inline void set_up_scalar(const UnalignedRay& ray, ScalarRay& out) {
-  const vfloat<4> direction = scale_direction(ray, out.scale);
-  const vfloat<4> raised = max(absolute(direction), broadcast<4>(kLeastDirection));
-  const vfloat<4> reciprocal = copy_sign(broadcast<4>(1.0f) / raised, direction);
-  store(out.direction, direction);
-  store(out.reciprocal, reciprocal);
-  store(out.origin, origin_of(ray));
-  choose_axes(direction, out);
-  store(out.ratio, direction / broadcast<4>(out.direction[out.kz]));
-  out.shear_z = out.reciprocal[out.kz];
-  out.unscale = inverse_of(out.scale);
-  out.slack = kLeastDistance + kLeastDistance * out.scale;
-  out.tmin = ray.tmin > -__FLT_MAX__ ? ray.tmin : -__FLT_MAX__;
-  out.tmax = ray.tmax < __FLT_MAX__ ? ray.tmax : __FLT_MAX__;
-  out.mask = ray.mask;
-  out.flags = ray.flags;
-}
-
-/// A lower (upper) bound of a scaled distance. A power of two scales exactly; what overflows lies
-/// beyond all that can be met, since scaled distances of triangles are below 2^62.
-inline float scaled_lower(const ScalarRay& ray, float t) { return t * ray.scale - ray.slack; }
-inline float scaled_upper(const ScalarRay& ray, float t) { return t * ray.scale + ray.slack; }
-
 /// Where in a node the planes lie that a ray meets first and last along each axis, in bytes, for
 /// each combination of backward axes.
 template <int N>
@@ -161,56 +141,86 @@ constexpr PlaneOffsets<N> kPlaneOffsets[8] = {
     plane_offsets<N>(0), plane_offsets<N>(1), plane_offsets<N>(2), plane_offsets<N>(3),
     plane_offsets<N>(4), plane_offsets<N>(5), plane_offsets<N>(6), plane_offsets<N>(7)};
 
-/// The ray as the node test reads it: near = bound * reciprocal + near_offset per axis.
+/// The ray as the node test reads it, spread over lanes.
 template <int N>
 struct SlabRay {
-  Uniform4<N> reciprocal;
-  Uniform4<N> near_offset;
-  Uniform4<N> far_offset;
-  float tmin;  ///< a lower bound, scaled
-  const PlaneOffsets<N>* planes;
+  Uniform3<N> reciprocal, near_offset, far_offset;
+  float nearest;
+  const PlaneOffsets<N>& planes;
+
+  explicit SlabRay(const ReadyRay& ray)
+      : reciprocal(ray.reciprocal),
+        near_offset(ray.near_offset),
+        far_offset(ray.far_offset),
+        nearest(ray.nearest),
+        planes(kPlaneOffsets<N>[ray.backward]) {}
 };
 
-/// What SlabRay spreads, with the axes in the lanes.
-struct AxisSlabs {
-  vfloat<4> reciprocal, near_offset, far_offset;
-  uint32_t backward;  ///< bit for each axis along which the ray runs backward
-};
+/// A lower (upper) bound of a scaled distance. A power of two scales exactly; what overflows lies
+/// beyond all that can be met, since scaled distances of triangles are below 2^62.
+inline float scaled_lower(const ReadyRay& ray, float t) { return t * ray.scale - ray.slack; }
+inline float scaled_upper(const ReadyRay& ray, float t) { return t * ray.scale + ray.slack; }
 
-/// In the margin, M_kz is taken as the greatest M of all axes, S_a as |d_a| and 1 / |d_kz| as 1:
-/// all no less than they are, since |d_kz| lies in [1, 2), and known without looking for kz.
-inline void set_up_axes(const ScalarRay& ray, const TreeView& tree, AxisSlabs& out) {
-  const vfloat<4> origin =
-      load<4>(ray.origin) - load<4>(reinterpret_cast<const float*>(&tree.centre));
-  const vfloat<4> direction = load<4>(ray.direction);
+/// The axis of the greatest component, the lowest of equal ones, and the other two in the order
+/// that keeps the winding. Neither is branched on: directions are too mixed to be predicted.
+inline void choose_axes(vfloat<4> direction, ReadyRay& out) {
   const vfloat<4> size = absolute(direction);
-  const vfloat<4> raised = max(size, broadcast<4>(kLeastDirection));
-  out.reciprocal = load<4>(ray.reciprocal);
-  const vfloat<4> magnitude =
-      absolute(origin) + (load<4>(reinterpret_cast<const float*>(&tree.greatest_bound)) +
-                          broadcast<4>(kLeastMagnitude));
-  const vfloat<4> greatest_magnitude = greatest_of_three(magnitude);
-  const vfloat<4> rounding = broadcast<4>(kMargin) * (magnitude + size * greatest_magnitude);
+  const int kz = __builtin_ctz(equal(size, greatest_of_three(size)));
+  const int is_negative = static_cast<int>(sign_bits(direction) >> kz) & 1;
+  // Two bits for each kz: the axis after it and the one before it; exchanged for backward rays.
+  constexpr int after = 0b001001, before = 0b010010;
+  const int entry = 6 * is_negative + 2 * kz;
+  out.kz = kz;
+  out.kx = ((before << 6 | after) >> entry) & 3;
+  out.ky = ((after << 6 | before) >> entry) & 3;
+}
+
+/// The margin of the slabs along each axis. M_kz is taken as the greatest M of all axes, S_a as
+/// |d_a| and 1 / |d_kz| as 1: all no less than they are, since |d_kz| lies in [1, 2), and known
+/// without looking for kz.
+template <int N>
+inline vfloat<N> margin_of(vfloat<N> size, vfloat<N> raised, vfloat<N> reciprocal,
+                           vfloat<N> magnitude, vfloat<N> greatest_magnitude) {
+  const vfloat<N> rounding = broadcast<N>(kMargin) * (magnitude + size * greatest_magnitude);
   // A raised component moves the point by what was added, times t <= M_kz / |d_kz|. That may be all
   // of t, so its own roundings count as well: four of t, six of the term on its way to the slab's
   // distance and two of the sums there, 12 u in all.
-  const vfloat<4> moved = (raised - size) * greatest_magnitude * broadcast<4>(1.0f + kRaisedMargin);
-  const vfloat<4> margin = (rounding + moved) * absolute(out.reciprocal);
-  const vfloat<4> product = origin * out.reciprocal;
-  out.near_offset = broadcast<4>(0.0f) - product - margin;
-  out.far_offset = margin - product;
-  out.backward = sign_bits(direction) & kAllAxes;
+  const vfloat<N> moved = (raised - size) * greatest_magnitude * broadcast<N>(1.0f + kRaisedMargin);
+  return (rounding + moved) * absolute(reciprocal);
 }
 
-template <int N>
-inline void set_up_slabs(const ScalarRay& ray, const TreeView& tree, SlabRay<N>& out) {
-  AxisSlabs slabs;
-  set_up_axes(ray, tree, slabs);
-  out.reciprocal = spread<N>(slabs.reciprocal);
-  out.near_offset = spread<N>(slabs.near_offset);
-  out.far_offset = spread<N>(slabs.far_offset);
-  out.planes = &kPlaneOffsets<N>[slabs.backward];
-  out.tmin = scaled_lower(ray, ray.tmin);
+/// One ray that is_traceable, with the axes in the lanes.
+inline void set_up(const UnalignedRay& ray, const TreeView& tree, ReadyRay& out) {
+  float scale;
+  const vfloat<4> direction = scale_direction(ray, scale);
+  const vfloat<4> size = absolute(direction);
+  const vfloat<4> raised = max(size, broadcast<4>(kLeastDirection));
+  const vfloat<4> reciprocal = copy_sign(broadcast<4>(1.0f) / raised, direction);
+  const vfloat<4> origin = origin_of(ray) - load<4>(reinterpret_cast<const float*>(&tree.centre));
+  const vfloat<4> magnitude =
+      absolute(origin) + (load<4>(reinterpret_cast<const float*>(&tree.greatest_bound)) +
+                          broadcast<4>(kLeastMagnitude));
+  const vfloat<4> margin =
+      margin_of<4>(size, raised, reciprocal, magnitude, greatest_of_three(magnitude));
+  const vfloat<4> product = origin * reciprocal;
+  store_row(out, offsetof(ReadyRay, reciprocal), reciprocal);
+  store_row(out, offsetof(ReadyRay, near_offset), broadcast<4>(0.0f) - product - margin);
+  store_row(out, offsetof(ReadyRay, far_offset), margin - product);
+  store_row(out, offsetof(ReadyRay, origin), origin_of(ray));
+  choose_axes(direction, out);
+  float components[4];
+  store(components, direction);
+  store_row(out, offsetof(ReadyRay, ratio), direction / broadcast<4>(components[out.kz]));
+  out.shear_z = out.reciprocal[out.kz];
+  out.scale = scale;
+  out.slack = kLeastDistance + kLeastDistance * scale;
+  out.tmin = ray.tmin > -__FLT_MAX__ ? ray.tmin : -__FLT_MAX__;
+  out.tmax = ray.tmax < __FLT_MAX__ ? ray.tmax : __FLT_MAX__;
+  out.nearest = scaled_lower(out, out.tmin);
+  out.farthest = scaled_upper(out, out.tmax);
+  out.mask = ray.mask;
+  out.flags = ray.flags;
+  out.backward = sign_bits(direction) & kAllAxes;
 }
 
 }  // namespace

@@ -95,42 +95,56 @@ inline StackEntry* choose_first(const TreeView& tree, const WideNode<N>& node, u
   return top;
 }
 
+/// Visits the current node or leaf and makes the next one current. Returns true at the end: where
+/// nothing is left, or the query has ended. It sets is_done in the second case.
+template <int N, typename Query, typename Probe>
+inline bool advance(const TreeView& tree, const SlabRay<N>& ray, Query& query, Probe& probe,
+                    const StackEntry* stack, StackEntry*& top, StackEntry& current, bool& is_done) {
+  constexpr bool needs_entry = Query::kOrdered || Probe::kNeedsEntry;
+  if (!current.subtree.is_leaf()) {
+    probe.on_node();
+    const WideNode<N>& node = node_at<N>(tree.memory, current.subtree);
+    vfloat<N> entry;
+    const uint32_t hits = test_boxes(node, ray, query.best_bound, entry) & current.subtree.mask();
+    if (hits != 0) {
+      float entries[N];
+      store(entries, entry);
+      if constexpr (Query::kOrdered) {
+        top = choose_nearest(tree, node, hits, entries, top, current);
+      } else {
+        top = choose_first<N, needs_entry>(tree, node, hits, entries, top, current);
+      }
+      return false;
+    }
+  } else {
+    probe.on_leaf(current.entry);
+    const LeafBlock<N>& leaf = leaf_at<N>(tree.memory, current.subtree);
+    if (query.visit_leaf(leaf, current.subtree.mask(), probe)) {
+      is_done = true;
+      return true;
+    }
+  }
+  do {
+    if (top == stack) return true;
+    --top;
+  } while (Query::kOrdered && top->entry > query.best_bound);
+  current.subtree = top->subtree;
+  if constexpr (needs_entry) current.entry = top->entry;
+  return false;
+}
+
 /// Visits what the query has to see of the subtree at start. Returns true if the query ended it.
 template <int N, typename Query, typename Probe>
-inline bool traverse(const TreeView& tree, const StackEntry& start, const SlabRay<N>& ray,
+inline bool traverse(const TreeView& tree, const StackEntry& start, const ReadyRay& ready,
                      Query& query, Probe& probe) {
-  constexpr bool needs_entry = Query::kOrdered || Probe::kNeedsEntry;
+  const SlabRay<N> ray(ready);
   StackEntry stack[kStackSize<N>];
   StackEntry* top = stack;
   StackEntry current = start;
-  while (true) {
-    if (!current.subtree.is_leaf()) {
-      probe.on_node();
-      const WideNode<N>& node = node_at<N>(tree.memory, current.subtree);
-      vfloat<N> entry;
-      const uint32_t hits = test_boxes(node, ray, query.best_bound, entry) & current.subtree.mask();
-      if (hits != 0) {
-        float entries[N];
-        store(entries, entry);
-        if constexpr (Query::kOrdered) {
-          top = choose_nearest(tree, node, hits, entries, top, current);
-        } else {
-          top = choose_first<N, needs_entry>(tree, node, hits, entries, top, current);
-        }
-        continue;
-      }
-    } else {
-      probe.on_leaf(current.entry);
-      const LeafBlock<N>& leaf = leaf_at<N>(tree.memory, current.subtree);
-      if (query.visit_leaf(leaf, current.subtree.mask(), probe)) return true;
-    }
-    do {
-      if (top == stack) return false;
-      --top;
-    } while (Query::kOrdered && top->entry > query.best_bound);
-    current.subtree = top->subtree;
-    if constexpr (needs_entry) current.entry = top->entry;
+  bool is_done = false;
+  while (!advance<N>(tree, ray, query, probe, stack, top, current, is_done)) {
   }
+  return is_done;
 }
 
 }  // namespace

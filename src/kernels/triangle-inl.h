@@ -46,7 +46,7 @@ inline bool is_inside_exactly(const ShearedBlock<N>& block, int lane) {
 /// == 0 that at least one has to be looked at exactly. A lane whose vertices all lie outside
 /// [nearest, farthest] along the ray is left out: its distance lies between theirs.
 template <int N, typename Probe>
-inline uint32_t test_inside(const LeafBlock<N>& leaf, const ScalarRay& ray, vfloat<N> nearest,
+inline uint32_t test_inside(const LeafBlock<N>& leaf, const ReadyRay& ray, vfloat<N> nearest,
                             vfloat<N> farthest, uint32_t lanes, ShearedBlock<N>& sheared,
                             Probe& probe) {
   const vfloat<N> origin_x = broadcast<N>(ray.origin[ray.kx]);
@@ -97,7 +97,7 @@ struct Crossings {
 /// float forms leave the triangle's own box on slivers or on grazing triangles. Four lanes at a
 /// time, and only where there are any; the other lanes receive garbage.
 template <int N>
-inline void compute_crossings(const ShearedBlock<N>& block, const ScalarRay& ray, uint32_t inside,
+inline void compute_crossings(const ShearedBlock<N>& block, const ReadyRay& ray, uint32_t inside,
                               Crossings<N>& out) {
   for (int first = 0; first < N; first += 4) {
     if (((inside >> first) & 0xFu) == 0) continue;
@@ -111,7 +111,7 @@ inline void compute_crossings(const ShearedBlock<N>& block, const ScalarRay& ray
     const vdouble4 along =
         (u * load_widened(block.z[0] + first) + v * load_widened(block.z[1] + first)) +
         w * load_widened(block.z[2] + first);
-    store_rounded(out.t + first, along / sum * broadcast_double(ray.unscale));
+    store_rounded(out.t + first, along / sum * broadcast_double(inverse_of(ray.scale)));
     store(out.v + first, v);
     store(out.w + first, w);
     store(out.sum + first, sum);

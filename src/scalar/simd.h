@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The vocabulary of the kernels in portable C++: the oracle of the other instruction sets.
 //
-//   vfloat<N>      N floats: load (from any address), store, + - *, min, max, multiply_add,
-//   comparisons to bit masks vfloat<4>      also /, absolute, copy_sign, sign_bits,
-//   greatest_of_three, first_bits,
-//                  first_lane, power_of_two_below, inverse_of_power: for the set-up of a ray
-//   Uniform4<N>    4 floats, each to be read as a vector of equal lanes, many times
+//   vfloat<N>      N floats: load (from any address), store, + - * /, min, max, multiply_add,
+//                  comparisons to bit masks, signs, selections, powers of two; rows to columns and
+//                  back
+//   vfloat<4>      also greatest_of_three, first_bits, first_lane: for axes in lanes
+//   Uniform3<N>    3 floats, each to be read as a vector of equal lanes, many times
 //   vdouble4       4 doubles, read from and written to floats
 //
 // min and max return their second operand where a lane is NaN or the two are equal, as the SSE
@@ -13,6 +13,7 @@
 // it, use it.
 #pragma once
 
+#include <stddef.h>
 #include <stdint.h>
 
 namespace kiwami {
@@ -88,18 +89,38 @@ inline uint32_t equal(vfloat<N> a, vfloat<N> b) {
   return mask_of<N>([&](int i) { return a.lane[i] == b.lane[i]; });
 }
 
-inline vfloat<4> operator/(vfloat<4> a, vfloat<4> b) {
-  return lane_by_lane<4>([&](int i) { return a.lane[i] / b.lane[i]; });
+template <int N>
+inline vfloat<N> operator/(vfloat<N> a, vfloat<N> b) {
+  return lane_by_lane<N>([&](int i) { return a.lane[i] / b.lane[i]; });
 }
-inline vfloat<4> absolute(vfloat<4> a) {
-  return lane_by_lane<4>([&](int i) { return __builtin_fabsf(a.lane[i]); });
+template <int N>
+inline vfloat<N> absolute(vfloat<N> a) {
+  return lane_by_lane<N>([&](int i) { return __builtin_fabsf(a.lane[i]); });
 }
-inline vfloat<4> copy_sign(vfloat<4> magnitude, vfloat<4> sign) {
-  return lane_by_lane<4>(
+template <int N>
+inline vfloat<N> copy_sign(vfloat<N> magnitude, vfloat<N> sign) {
+  return lane_by_lane<N>(
       [&](int i) { return __builtin_copysignf(magnitude.lane[i], sign.lane[i]); });
 }
-inline uint32_t sign_bits(vfloat<4> a) {
-  return mask_of<4>([&](int i) { return __builtin_signbit(a.lane[i]) != 0; });
+/// By its bits: vectorised, GCC 12's own function ends in an internal error.
+inline bool is_negative(float a) {
+  int32_t bits;
+  __builtin_memcpy(&bits, &a, sizeof bits);
+  return bits < 0;
+}
+template <int N>
+inline uint32_t sign_bits(vfloat<N> a) {
+  return mask_of<N>([&](int i) { return is_negative(a.lane[i]); });
+}
+/// Lanes of x where a equals b, else of y.
+template <int N>
+inline vfloat<N> select_equal(vfloat<N> a, vfloat<N> b, vfloat<N> x, vfloat<N> y) {
+  return lane_by_lane<N>([&](int i) { return a.lane[i] == b.lane[i] ? x.lane[i] : y.lane[i]; });
+}
+/// Lanes of x where the sign bit of sign is set, else of y.
+template <int N>
+inline vfloat<N> select_negative(vfloat<N> sign, vfloat<N> x, vfloat<N> y) {
+  return lane_by_lane<N>([&](int i) { return is_negative(sign.lane[i]) ? x.lane[i] : y.lane[i]; });
 }
 
 /// In each of the first three lanes the greatest of them; they are not negative.
@@ -114,15 +135,17 @@ inline float with_bits(float value, uint32_t (*change)(uint32_t)) {
   __builtin_memcpy(&value, &bits, sizeof value);
   return value;
 }
-/// In each lane the greatest power of two that is not above it; the lanes are positive and normal.
-inline vfloat<4> power_of_two_below(vfloat<4> a) {
-  return lane_by_lane<4>([&](int i) {
+/// In each lane the greatest power of two that is not above it, or 0; the lanes are not negative.
+template <int N>
+inline vfloat<N> power_of_two_below(vfloat<N> a) {
+  return lane_by_lane<N>([&](int i) {
     return with_bits(a.lane[i], [](uint32_t bits) { return bits & 0x7F800000u; });
   });
 }
 /// In each lane the inverse of a power of two, 2^-126 to 2^126.
-inline vfloat<4> inverse_of_power(vfloat<4> a) {
-  return lane_by_lane<4>([&](int i) {
+template <int N>
+inline vfloat<N> inverse_of_power(vfloat<N> a) {
+  return lane_by_lane<N>([&](int i) {
     return with_bits(a.lane[i], [](uint32_t bits) { return (254u << 23) - bits; });
   });
 }
@@ -132,6 +155,59 @@ inline uint32_t first_bits(vfloat<4> a) {
   uint32_t bits;
   __builtin_memcpy(&bits, a.lane, sizeof bits);
   return bits;
+}
+
+/// Bits that are set in each lane of marks, and those of bit where a <= b; and which lanes have
+/// any.
+template <int N>
+inline vfloat<N> mark_less_equal(vfloat<N> marks, vfloat<N> a, vfloat<N> b, uint32_t bit) {
+  return lane_by_lane<N>([&](int i) {
+    uint32_t bits;
+    __builtin_memcpy(&bits, &marks.lane[i], sizeof bits);
+    bits |= a.lane[i] <= b.lane[i] ? bit : 0;
+    float marked;
+    __builtin_memcpy(&marked, &bits, sizeof marked);
+    return marked;
+  });
+}
+template <int N>
+inline uint32_t marked_lanes(vfloat<N> marks) {
+  return mask_of<N>([&](int i) {
+    uint32_t bits;
+    __builtin_memcpy(&bits, &marks.lane[i], sizeof bits);
+    return bits != 0;
+  });
+}
+
+/// Four columns from N rows of four floats, stride bytes apart.
+template <int N>
+inline void load_rows(const unsigned char* rows, size_t stride, vfloat<N> (&columns)[4]) {
+  for (int i = 0; i < N; ++i) {
+    float row[4];
+    __builtin_memcpy(row, rows + static_cast<size_t>(i) * stride, sizeof row);
+    for (int k = 0; k < 4; ++k) columns[k].lane[i] = row[k];
+  }
+}
+/// Writes row i of four columns to the floats that lie offset bytes into *targets[i].
+template <int N, typename Target>
+inline void store_rows(const vfloat<N> (&columns)[4], Target* const* targets, size_t offset) {
+  for (int i = 0; i < N; ++i) {
+    const float row[4] = {columns[0].lane[i], columns[1].lane[i], columns[2].lane[i],
+                          columns[3].lane[i]};
+    __builtin_memcpy(reinterpret_cast<unsigned char*>(targets[i]) + offset, row, sizeof row);
+  }
+}
+template <int N>
+inline float least_lane(vfloat<N> a) {
+  float least = a.lane[0];
+  for (int i = 1; i < N; ++i) least = a.lane[i] < least ? a.lane[i] : least;
+  return least;
+}
+template <int N>
+inline float greatest_lane(vfloat<N> a) {
+  float most = a.lane[0];
+  for (int i = 1; i < N; ++i) most = a.lane[i] > most ? a.lane[i] : most;
+  return most;
 }
 
 struct vdouble4 {

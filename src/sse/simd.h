@@ -10,18 +10,13 @@ namespace {
 
 /// A broadcast takes a shuffle beside the load, so it is done once.
 template <int N>
-struct Uniform4 {
-  vfloat<4> lane[4];
+struct Uniform3 {
+  vfloat<N> lane[3];
 
-  vfloat<4> operator[](int i) const { return lane[i]; }
+  explicit Uniform3(const float* from)
+      : lane{broadcast<N>(from[0]), broadcast<N>(from[1]), broadcast<N>(from[2])} {}
+  vfloat<N> operator[](int i) const { return lane[i]; }
 };
-template <int N>
-inline Uniform4<N> spread(vfloat<4> a) {
-  return {{{simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(0, 0, 0, 0))},
-           {simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(1, 1, 1, 1))},
-           {simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(2, 2, 2, 2))},
-           {simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(3, 3, 3, 3))}}};
-}
 
 struct vdouble4 {
   simde__m128d low, high;

@@ -5,6 +5,7 @@
 
 #include <simde/x86/fma.h>
 #include <simde/x86/sse4.1.h>
+#include <stddef.h>
 #include <stdint.h>
 
 namespace kiwami {
@@ -57,17 +58,21 @@ inline vfloat<4> absolute(vfloat<4> a) {
 inline vfloat<4> copy_sign(vfloat<4> magnitude, vfloat<4> sign) {
   return {simde_mm_or_ps(magnitude.value, simde_mm_and_ps(simde_mm_set1_ps(-0.0f), sign.value))};
 }
+inline vfloat<4> select_equal(vfloat<4> a, vfloat<4> b, vfloat<4> x, vfloat<4> y) {
+  return {simde_mm_blendv_ps(y.value, x.value, simde_mm_cmpeq_ps(a.value, b.value))};
+}
+inline vfloat<4> select_negative(vfloat<4> sign, vfloat<4> x, vfloat<4> y) {
+  return {simde_mm_blendv_ps(y.value, x.value, sign.value)};
+}
 /// In each of the first three lanes the greatest of them.
 inline vfloat<4> greatest_of_three(vfloat<4> a) {
   const simde__m128 yzx = simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(0, 0, 2, 1));
   const simde__m128 zxy = simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(0, 1, 0, 2));
   return {simde_mm_max_ps(simde_mm_max_ps(a.value, yzx), zxy)};
 }
-/// In each lane the greatest power of two that is not above it; the lanes are positive and normal.
 inline vfloat<4> power_of_two_below(vfloat<4> a) {
   return {simde_mm_and_ps(a.value, simde_mm_castsi128_ps(simde_mm_set1_epi32(0x7F800000)))};
 }
-/// In each lane the inverse of a power of two, 2^-126 to 2^126.
 inline vfloat<4> inverse_of_power(vfloat<4> a) {
   return {simde_mm_castsi128_ps(
       simde_mm_sub_epi32(simde_mm_set1_epi32(254 << 23), simde_mm_castps_si128(a.value)))};
@@ -78,6 +83,55 @@ inline uint32_t first_bits(vfloat<4> a) {
 }
 inline uint32_t sign_bits(vfloat<4> a) {
   return static_cast<uint32_t>(simde_mm_movemask_ps(a.value));
+}
+
+inline vfloat<4> mark_less_equal(vfloat<4> marks, vfloat<4> a, vfloat<4> b, uint32_t bit) {
+  const simde__m128 bits = simde_mm_castsi128_ps(simde_mm_set1_epi32(static_cast<int32_t>(bit)));
+  return {simde_mm_or_ps(marks.value, simde_mm_and_ps(simde_mm_cmple_ps(a.value, b.value), bits))};
+}
+inline uint32_t marked_lanes(vfloat<4> marks) {
+  const simde__m128i is_zero =
+      simde_mm_cmpeq_epi32(simde_mm_castps_si128(marks.value), simde_mm_setzero_si128());
+  return ~static_cast<uint32_t>(simde_mm_movemask_ps(simde_mm_castsi128_ps(is_zero))) & 0xFu;
+}
+
+/// Four rows of four to columns, or back.
+inline void transpose(const simde__m128 (&rows)[4], simde__m128 (&columns)[4]) {
+  const simde__m128 low01 = simde_mm_unpacklo_ps(rows[0], rows[1]);
+  const simde__m128 low23 = simde_mm_unpacklo_ps(rows[2], rows[3]);
+  const simde__m128 high01 = simde_mm_unpackhi_ps(rows[0], rows[1]);
+  const simde__m128 high23 = simde_mm_unpackhi_ps(rows[2], rows[3]);
+  columns[0] = simde_mm_movelh_ps(low01, low23);
+  columns[1] = simde_mm_movehl_ps(low23, low01);
+  columns[2] = simde_mm_movelh_ps(high01, high23);
+  columns[3] = simde_mm_movehl_ps(high23, high01);
+}
+inline void load_rows(const unsigned char* rows, size_t stride, vfloat<4> (&columns)[4]) {
+  simde__m128 row[4], column[4];
+  for (size_t i = 0; i < 4; ++i) {
+    row[i] = simde_mm_loadu_ps(reinterpret_cast<const float*>(rows + i * stride));
+  }
+  transpose(row, column);
+  for (int k = 0; k < 4; ++k) columns[k].value = column[k];
+}
+template <typename Target>
+inline void store_rows(const vfloat<4> (&columns)[4], Target* const* targets, size_t offset) {
+  const simde__m128 column[4] = {columns[0].value, columns[1].value, columns[2].value,
+                                 columns[3].value};
+  simde__m128 row[4];
+  transpose(column, row);
+  for (int i = 0; i < 4; ++i) {
+    auto* const bytes = reinterpret_cast<unsigned char*>(targets[i]) + offset;
+    simde_mm_storeu_ps(reinterpret_cast<float*>(bytes), row[i]);
+  }
+}
+inline float least_lane(vfloat<4> a) {
+  const simde__m128 two = simde_mm_min_ps(a.value, simde_mm_movehl_ps(a.value, a.value));
+  return simde_mm_cvtss_f32(simde_mm_min_ps(two, simde_mm_shuffle_ps(two, two, 1)));
+}
+inline float greatest_lane(vfloat<4> a) {
+  const simde__m128 two = simde_mm_max_ps(a.value, simde_mm_movehl_ps(a.value, a.value));
+  return simde_mm_cvtss_f32(simde_mm_max_ps(two, simde_mm_shuffle_ps(two, two, 1)));
 }
 
 }  // namespace

@@ -76,7 +76,8 @@ class WideVerifier {
       fail("the leaf width is %u, expected the node width %u", tree_.leaf_width, tree_.width);
     }
     if (tree_.memory.size() != tree_.node_bytes() + tree_.leaf_bytes() ||
-        tree_.view.memory != tree_.memory.data()) {
+        tree_.view.memory != tree_.memory.data() ||
+        tree_.view.memory_bytes != tree_.memory.size()) {
       fail("%zu bytes do not hold %llu nodes and %llu leaf blocks", tree_.memory.size(),
            static_cast<unsigned long long>(tree_.node_count),
            static_cast<unsigned long long>(tree_.leaf_block_count));

@@ -79,6 +79,7 @@ struct TreeView {
   Vec3f greatest_bound;     ///< per axis, the greatest absolute box coordinate in the stored frame
   float bound_padding;      ///< 0
   uint32_t has_duplicates;  ///< 1: a triangle may stand in several leaves
+  uint64_t memory_bytes;
 };
 
 /// Maps a running triangle id to its geometry. Plain data.

@@ -261,6 +261,7 @@ WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
       break;
   }
   tree.view.memory = tree.memory.data();
+  tree.view.memory_bytes = tree.memory.size();
   return tree;
 }
 

@@ -54,6 +54,40 @@ TEST(AllKernels, AgreeWithThePlainOracleOnClosedMeshes) {
   }
 }
 
+/// A bundle of size * size rays from a point near the mesh through a window of it, row by row: as
+/// coherent as those of a camera.
+Expected coherent_rays(const PlainOracle& oracle, const Mesh& mesh, int size, Random& random) {
+  const Point eye = mesh.vertices[random.below(mesh.vertices.size())] +
+                    Point{random.symmetric(), random.symmetric(), random.symmetric()} * 2.0f;
+  const Point target = mesh.vertices[random.below(mesh.vertices.size())];
+  const Point right{random.symmetric(), random.symmetric(), random.symmetric()};
+  const Point up{random.symmetric(), random.symmetric(), random.symmetric()};
+  Expected expected;
+  for (int i = 0; i < size * size; ++i) {
+    const Point d = (target - eye) + right * (0.3f * static_cast<float>(i % size) / size) +
+                    up * (0.3f * static_cast<float>(i / size) / size);
+    expected.rays.push_back({eye.x, eye.y, eye.z, 0.0f, d.x, d.y, d.z, INFINITY, 0.0f, ~0u, 0, 0});
+    expected.hits.push_back(oracle.closest_hit(expected.rays.back()));
+    expected.counts.push_back(oracle.all_hits(expected.rays.back()));
+  }
+  return expected;
+}
+
+TEST(AllKernels, AgreeWithThePlainOracleOnCoherentRays) {
+  Random random(seed());
+  for (const ClosedMesh& closed : closed_meshes()) {
+    const Scene scene = scene_of(closed);
+    const PlainOracle oracle(scene);
+    for (uint64_t bundle = 0; bundle < ray_budget(20000) / 2000 + 1; ++bundle) {
+      const Expected expected = coherent_rays(oracle, scene.meshes.front(), 16, random);
+      for (const NamedKernels& kernels : all_kernels()) {
+        EXPECT_EQ(difference(kernels, TestTree(scene, kernels.width).view(), expected), "")
+            << "KIWAMI_SEED=" << seed();
+      }
+    }
+  }
+}
+
 /// Rays along an axis, from so far that the mesh is a point to them, through each of its vertices.
 /// Each that hits is followed by one whose interval is the hit alone: a box that is left too early
 /// by a single rounding is missed.

@@ -95,6 +95,7 @@ void TestTree::join() {
   std::memcpy(bytes, nodes<N>().data(), node_bytes);
   std::memcpy(bytes + node_bytes, leaves<N>().data(), leaf_bytes);
   view_.tree.memory = bytes;
+  view_.tree.memory_bytes = node_bytes + leaf_bytes;
 }
 
 template <int N>
