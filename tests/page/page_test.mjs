@@ -9,12 +9,12 @@ import {execFileSync} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
-import {join} from 'node:path';
+import {join, resolve} from 'node:path';
 import {after, before, describe, test} from 'node:test';
 import {pathToFileURL} from 'node:url';
 
 const [kiwami, modules, executablePath] = process.argv.slice(2);
-const {chromium} = createRequire(join(modules, 'any.js'))('playwright-core');
+const {chromium} = createRequire(resolve(modules, 'any.js'))('playwright-core');
 
 const pipelines = ['binned_sah', 'ploc+rotation', 'lbvh,surface_area,unmerged'];
 const Kind = {INNER: 0, LEAF: 1, FOLDED: 2, GROUP: 3};
@@ -74,11 +74,11 @@ function arcsBelow(nodes, row) {
     (a, b) => isGroup(a) - isGroup(b) || arcCost(nodes, b) - arcCost(nodes, a) || a - b);
 }
 
-/** The middle of the first ring's arc number `i`, in pixels of the visible page. */
-async function pointOfArc(page, nodes, focus, i) {
+/** A point of the first ring's arc number `i`, by default its middle, in pixels of the visible page. */
+async function pointOfArc(page, nodes, focus, i, part = 0.5) {
   const arcs = arcsBelow(nodes, focus);
   const start = arcs.slice(0, i).reduce((sum, row) => sum + arcCost(nodes, row), 0);
-  const turn = (start + arcCost(nodes, arcs[i]) / 2) / arcCost(nodes, focus) * 2 * Math.PI;
+  const turn = (start + arcCost(nodes, arcs[i]) * part) / arcCost(nodes, focus) * 2 * Math.PI;
   const box = await page.locator('.chart canvas').first().boundingBox();
   // The disc in the middle ends at 0.2 of the radius; nine rings at most lie between it and the rim.
   const distance = (Math.min(box.width, box.height) / 2 - 4) * (0.2 + 0.8 / 9 / 2);
@@ -95,7 +95,9 @@ async function clickArc(page, nodes, focus, i) {
 /** How many pixels of a canvas have each colour, most frequent first. */
 function coloursOf(page, selector) {
   return page.locator(selector).first().evaluate(canvas => {
-    const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d', {willReadFrequently: true});
+    copy.drawImage(canvas, 0, 0);
+    const {data} = copy.getImageData(0, 0, canvas.width, canvas.height);
     const counts = new Map();
     for (let i = 0; i < data.length; i += 4) {
       if (data[i + 3] < 255) continue;
@@ -122,7 +124,7 @@ describe('a page of three pipelines', () => {
   let html, data, page, seen;
 
   before(async () => {
-    ({html, data} = inspect('three', 'terrain:60', '--nodes', '900', '--ray-count', '2000',
+    ({html, data} = inspect('three', 'soup:7200:1', '--nodes', '900', '--ray-count', '2000',
                             ...pipelines.flatMap(pipeline => ['--pipeline', pipeline])));
     ({page, seen} = await open(html));
   });
@@ -130,7 +132,7 @@ describe('a page of three pipelines', () => {
   test('loads without a complaint and asks for nothing else', async () => {
     assert.deepEqual(seen.complaints, []);
     assert.deepEqual(seen.requests, [pathToFileURL(html).href]);
-    assert.equal(await page.title(), 'terrain:60 \u2013 Kiwami inspect');
+    assert.equal(await page.title(), 'soup:7200:1 \u2013 Kiwami inspect');
     assert.match(await text(page, 'scene-facts'), /^7,200 triangles, 3 pipelines/);
   });
 
@@ -221,7 +223,8 @@ describe('a page of three pipelines', () => {
   });
 
   test('the modes change the colours and the legend', async () => {
-    const pictures = new Set(), legends = new Set();
+    const pictures = new Set();
+    const legends = [/^Share of the whole tree/, /end-point overlap/, /^Share of the rays/];
     const buttons = page.locator('#modes button');
     const count = await buttons.count();
     assert.deepEqual(await buttons.allInnerTexts(), ['SAH share', 'Overlap', 'Visits']);
@@ -229,10 +232,9 @@ describe('a page of three pipelines', () => {
       await buttons.nth(i).click();
       assert.equal(await buttons.nth(i).getAttribute('aria-pressed'), 'true');
       pictures.add(await picture(page, '.chart canvas'));
-      legends.add(await text(page, 'legend'));
+      assert.match(await text(page, 'legend'), legends[i]);
     }
     assert.equal(pictures.size, count);
-    assert.equal(legends.size, count);
     await buttons.first().click();
   });
 
@@ -268,12 +270,32 @@ describe('a page of three pipelines', () => {
     assert.equal(await picture(page, '#scene'), chosen);
   });
 
-  test('a hint follows the pointer', async () => {
+  test('an arc has the colour of its node in the list', async () => {
     const {nodes} = data.pipelines[0];
     await page.locator('#path button', {hasText: 'Root'}).click();
+    const arcs = arcsBelow(nodes, 0);
+    for (const [mode, column] of ['cost', 'overlap', 'visits'].entries()) {
+      await page.locator('#modes button').nth(mode).click();
+      const i = arcs.findIndex(row => nodes[column][row] > 0);
+      const {x, y} = await pointOfArc(page, nodes, 0, i, 0.2);
+      const listed = await page.locator('#children i').nth(i).evaluate(
+        swatch => getComputedStyle(swatch).backgroundColor.match(/\d+/g).map(Number));
+      const drawn = await page.locator('.chart canvas').first().evaluate((canvas, at) => {
+        const {left, top} = canvas.getBoundingClientRect();
+        const copy = new OffscreenCanvas(1, 1).getContext('2d', {willReadFrequently: true});
+        copy.drawImage(canvas, left - at.x, top - at.y);
+        return [...copy.getImageData(0, 0, 1, 1).data.slice(0, 3)];
+      }, {x: Math.round(x), y: Math.round(y)});
+      assert.deepEqual(drawn, listed, `${column} of arc ${i}`);
+    }
+    await page.locator('#modes button').first().click();
+  });
+
+  test('a hint follows the pointer', async () => {
+    const {nodes} = data.pipelines[0];
     const {x, y} = await pointOfArc(page, nodes, 0, 0);
     await page.mouse.move(x, y);
-    assert.match(await text(page, 'tooltip'), new RegExp(`${nodes.index[arcsBelow(nodes, 0)[0]]}\\n`));
+    assert.match(await text(page, 'tooltip'), new RegExp(` ${nodes.index[arcsBelow(nodes, 0)[0]]}\\n`));
     await page.mouse.move(5, 5);
     assert.ok(await page.locator('#tooltip').isHidden());
   });
@@ -289,6 +311,24 @@ describe('a page of three pipelines', () => {
     assert.deepEqual(seenDark.complaints, []);
     await dark.close();
   });
+});
+
+test('each arc is as wide as its cost, also what stands for many nodes', async () => {
+  const {html, data} = inspect('few', 'terrain:60', '--nodes', '8', '--pipeline', 'lbvh');
+  const {page, seen} = await open(html);
+  const {nodes} = data.pipelines[0];
+  const arcs = arcsBelow(nodes, 0);
+  assert.equal(nodes.kind[arcs.at(-1)], Kind.GROUP);
+  for (const [i, row] of arcs.entries()) {
+    const name = nodes.kind[row] === Kind.GROUP ? `^${nodes.members[row]} more nodes\n` : `^Node ${nodes.index[row]}\n`;
+    for (const part of [0.03, 0.97]) {
+      const {x, y} = await pointOfArc(page, nodes, 0, i, part);
+      await page.mouse.move(x, y);
+      assert.match(await text(page, 'tooltip'), new RegExp(name), `arc ${i} at ${part}`);
+    }
+  }
+  assert.deepEqual(seen.complaints, []);
+  await page.close();
 });
 
 test('a tree of hundreds of thousands of nodes is a small page that opens at once', async () => {

@@ -85,7 +85,8 @@ export class Details {
       : `${counted(children.length, 'arc')} below` + (rest > 0 ? `, the first ${mostChildren}:` : '');
     this.children.replaceChildren(...children.slice(0, mostChildren).map(child => {
       const swatch = element('i');
-      swatch.style.background = mode.colour(tree, child.data) ?? 'var(--gap)';
+      const colour = mode.colour(tree, child.data);
+      if (colour) swatch.style.background = colour;
       return this.#button(tree, child, [
         swatch,
         element('span', {textContent: tree.name(child.data)}),
