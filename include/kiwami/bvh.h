@@ -22,9 +22,11 @@ typedef struct kiwami_bvh kiwami_bvh;
  * its own here, so that every node has one parent. 56 bytes, at any address. */
 typedef struct kiwami_bvh_node {
   float lower[3], upper[3]; /* its box, in the coordinates of the primitives. It lies within the box
-                             * of its parent and contains the boxes of its primitives. The stored
-                             * boxes are rounded outwards: it may be larger than needed by a few
-                             * units in the last place of the scene's extent. */
+                             * of its parent and contains the boxes of its primitives; of those that
+                             * stand in several leaves (spatial splits) the parts that it is there
+                             * for. The stored boxes of scenes are rounded outwards: they may be
+                             * larger than needed by a few units in the last place of the scene's
+                             * extent. */
   uint32_t parent;          /* KIWAMI_INVALID_ID for the root */
   uint32_t depth;           /* how many ancestors it has; 0 for the root */
   uint32_t first_child;     /* its children are first_child .. first_child + child_count - 1; */
@@ -178,7 +180,8 @@ KIWAMI_API kiwami_result kiwami_bvh_desc_init(kiwami_bvh_desc* desc, size_t size
 KIWAMI_API kiwami_result kiwami_bvh_build(kiwami_device* device, const kiwami_bvh_desc* desc,
                                           kiwami_bvh** bvh);
 
-/* Moves the boxes of a tree after its primitives have moved; its shape stays.
+/* Moves the boxes of a tree after its primitives have moved; its shape stays. Primitives that stand
+ * in several leaves (spatial splits) get their whole box in each.
  *   boxes     the boxes of all primitives, as many and in the order of kiwami_bvh_build, those that
  *             were left out then included; stride bytes apart (0: 24). NULL for a tree over a mesh,
  *             whose vertices are read anew: they may have changed with KIWAMI_MESH_SHARE_BUFFERS.

@@ -68,16 +68,18 @@ std::vector<long double> foreign_surface(const Bvh& bvh, const Triangles& mesh) 
   const std::vector<kiwami_bvh_primitive> primitives = primitives_of(bvh);
   long double whole = 0;
   std::vector<Polygon> polygons;
-  for (const kiwami_bvh_primitive& primitive : primitives) {
-    polygons.push_back(polygon_of(mesh, primitive.primitive_id));
+  for (uint32_t i = 0; i < mesh.indices.size() / 3; ++i) {
+    polygons.push_back(polygon_of(mesh, i));
     whole += area(polygons.back());
   }
   std::vector<long double> foreign(nodes.size());
   for (size_t n = 0; n < nodes.size(); ++n) {
+    std::vector<bool> is_below(polygons.size());
+    for (uint32_t i = 0; i < nodes[n].primitive_count; ++i) {
+      is_below[primitives[nodes[n].first_primitive + i].primitive_id] = true;
+    }
     for (uint32_t i = 0; i < polygons.size(); ++i) {
-      const bool is_below =
-          i >= nodes[n].first_primitive && i < nodes[n].first_primitive + nodes[n].primitive_count;
-      if (!is_below) foreign[n] += area(within(polygons[i], nodes[n])) / whole;
+      if (!is_below[i]) foreign[n] += area(within(polygons[i], nodes[n])) / whole;
     }
   }
   return foreign;
@@ -172,6 +174,32 @@ TEST_F(MeasureTest, EndPointOverlapIsThatOfItsDefinition) {
       }
     }
   }
+}
+
+TEST_F(MeasureTest, TrianglesInSeveralLeavesAreAtHomeInEach) {
+  const Triangles mesh = slivers(300, 28);
+  const Geometry geometry = make_mesh(device_, mesh.desc());
+  const kiwami_parameter_value builder = {KIWAMI_PARAMETER_BUILDER, 0,
+                                          KIWAMI_BUILDER_SPATIAL_SPLIT};
+  kiwami_bvh_desc desc;
+  ASSERT_EQ(kiwami_bvh_desc_init(&desc, sizeof desc), KIWAMI_OK);
+  desc.geometry = geometry.get();
+  desc.parameters = &builder;
+  desc.parameter_count = 1;
+  kiwami_bvh* made = nullptr;
+  ASSERT_EQ(kiwami_bvh_build(device_.get(), &desc, &made), KIWAMI_OK) << last_error();
+  const Bvh bvh(made);
+  ASSERT_GT(info_of(bvh).primitive_count, 300u);
+  const std::vector<long double> expected = foreign_surface(bvh, mesh);
+  const Measured measured = measure(bvh);
+  for (size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(measured.nodes[i].epo, static_cast<double>(expected[i]), 1e-12) << i;
+  }
+  EXPECT_NEAR(measured.totals.surface_area, measure(bvh_of(commit(mesh, 8, 0))).totals.surface_area,
+              1e-9);
+  // Refit where they are, they fill whole boxes, and the tree stays valid.
+  ASSERT_EQ(kiwami_bvh_refit(bvh.get(), nullptr, 0, 0), KIWAMI_OK) << last_error();
+  EXPECT_EQ(kiwami_bvh_validate(bvh.get()), KIWAMI_OK) << last_error();
 }
 
 TEST_F(MeasureTest, EndPointOverlapOfTwinsAndOfTrianglesApart) {
