@@ -16,14 +16,14 @@ template <int N>
 __attribute__((always_inline)) inline uint32_t test_boxes(const WideNode<N>& node,
                                                           const SlabRay<N>& ray, float best,
                                                           vfloat<N>& entry) {
-  const auto planes = [&](size_t offset) {
+  const auto planes = [&](size_t offset) __attribute__((always_inline)) {
     const auto* bytes = reinterpret_cast<const unsigned char*>(node.bounds);
     return load<N>(reinterpret_cast<const float*>(bytes + offset));
   };
-  const auto near_distance = [&](int axis) {
+  const auto near_distance = [&](int axis) __attribute__((always_inline)) {
     return multiply_add(planes(ray.planes.near[axis]), ray.reciprocal[axis], ray.near_offset[axis]);
   };
-  const auto far_distance = [&](int axis) {
+  const auto far_distance = [&](int axis) __attribute__((always_inline)) {
     return multiply_add(planes(ray.planes.far[axis]), ray.reciprocal[axis], ray.far_offset[axis]);
   };
   entry = max(max(near_distance(0), near_distance(1)),

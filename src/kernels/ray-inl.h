@@ -69,11 +69,10 @@ inline const UnalignedRay& ray_of(const RayBatch& batch, size_t i) {
 }
 
 /// The first and second four floats of a ray: origin and tmin, direction and tmax.
-inline vfloat<4> origin_of(const UnalignedRay& ray) {
-  return load<4>(reinterpret_cast<const float*>(&ray));
-}
+inline vfloat<4> origin_of(const UnalignedRay& ray) { return load_from_bytes<4>(&ray); }
 inline vfloat<4> direction_of(const UnalignedRay& ray) {
-  return load<4>(reinterpret_cast<const float*>(&ray) + 4);
+  return load_from_bytes<4>(reinterpret_cast<const unsigned char*>(&ray) +
+                            offsetof(kiwami_ray, direction_x));
 }
 
 constexpr uint32_t kAllAxes = 7;

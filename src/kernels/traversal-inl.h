@@ -97,9 +97,12 @@ inline StackEntry* choose_first(const TreeView& tree, const WideNode<N>& node, u
 
 /// Visits the current node or leaf and makes the next one current. Returns true at the end: where
 /// nothing is left, or the query has ended. It sets is_done in the second case.
+// Inlined by force: it stands in several loops, and a call would keep the ray out of registers.
 template <int N, typename Query, typename Probe>
-inline bool advance(const TreeView& tree, const SlabRay<N>& ray, Query& query, Probe& probe,
-                    const StackEntry* stack, StackEntry*& top, StackEntry& current, bool& is_done) {
+__attribute__((always_inline)) inline bool advance(const TreeView& tree, const SlabRay<N>& ray,
+                                                   Query& query, Probe& probe,
+                                                   const StackEntry* stack, StackEntry*& top,
+                                                   StackEntry& current, bool& is_done) {
   constexpr bool needs_entry = Query::kOrdered || Probe::kNeedsEntry;
   if (!current.subtree.is_leaf()) {
     probe.on_node();

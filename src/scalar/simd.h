@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The vocabulary of the kernels in portable C++: the oracle of the other instruction sets.
 //
-//   vfloat<N>      N floats: load (from any address), store, + - * /, min, max, multiply_add,
+//   vfloat<N>      N floats: load, load_from_bytes (at any address), store, + - * /, min, max,
+//   multiply_add,
 //                  comparisons to bit masks, signs, selections, powers of two; rows to columns and
 //                  back
 //   vfloat<4>      also greatest_of_three, first_bits, first_lane: for axes in lanes
@@ -16,6 +17,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+// By force: a call passes its vectors through memory, and GCC makes some where a kernel is large.
+#define KIWAMI_INLINE __attribute__((always_inline)) inline
+
 namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
@@ -26,109 +30,111 @@ struct vfloat {
 };
 
 template <int N, typename Operation>
-inline vfloat<N> lane_by_lane(Operation operation) {
+KIWAMI_INLINE vfloat<N> lane_by_lane(Operation operation) {
   vfloat<N> result;
   for (int i = 0; i < N; ++i) result.lane[i] = operation(i);
   return result;
 }
 
 template <int N, typename Predicate>
-inline uint32_t mask_of(Predicate predicate) {
+KIWAMI_INLINE uint32_t mask_of(Predicate predicate) {
   uint32_t mask = 0;
   for (int i = 0; i < N; ++i) mask |= static_cast<uint32_t>(predicate(i)) << i;
   return mask;
 }
 
 template <int N>
-inline vfloat<N> load(const float* from) {
+KIWAMI_INLINE vfloat<N> load(const float* from) {
+  return lane_by_lane<N>([&](int i) { return from[i]; });
+}
+template <int N>
+KIWAMI_INLINE vfloat<N> load_from_bytes(const void* from) {
   vfloat<N> result;
   __builtin_memcpy(&result, from, sizeof result);
   return result;
 }
 template <int N>
-inline vfloat<N> broadcast(float value) {
+KIWAMI_INLINE vfloat<N> broadcast(float value) {
   return lane_by_lane<N>([&](int) { return value; });
 }
 template <int N>
-inline void store(float* to, vfloat<N> a) {
+KIWAMI_INLINE void store(float* to, vfloat<N> a) {
   for (int i = 0; i < N; ++i) to[i] = a.lane[i];
 }
 
 template <int N>
-inline vfloat<N> operator+(vfloat<N> a, vfloat<N> b) {
+KIWAMI_INLINE vfloat<N> operator+(vfloat<N> a, vfloat<N> b) {
   return lane_by_lane<N>([&](int i) { return a.lane[i] + b.lane[i]; });
 }
 template <int N>
-inline vfloat<N> operator-(vfloat<N> a, vfloat<N> b) {
+KIWAMI_INLINE vfloat<N> operator-(vfloat<N> a, vfloat<N> b) {
   return lane_by_lane<N>([&](int i) { return a.lane[i] - b.lane[i]; });
 }
 template <int N>
-inline vfloat<N> operator*(vfloat<N> a, vfloat<N> b) {
+KIWAMI_INLINE vfloat<N> operator*(vfloat<N> a, vfloat<N> b) {
   return lane_by_lane<N>([&](int i) { return a.lane[i] * b.lane[i]; });
 }
-// Inlined by force: a call passes its vectors through memory, and GCC makes one at width 4.
 template <int N>
-__attribute__((always_inline)) inline vfloat<N> multiply_add(vfloat<N> a, vfloat<N> b,
-                                                             vfloat<N> c) {
+KIWAMI_INLINE vfloat<N> multiply_add(vfloat<N> a, vfloat<N> b, vfloat<N> c) {
   return a * b + c;
 }
 template <int N>
-inline vfloat<N> min(vfloat<N> a, vfloat<N> b) {
+KIWAMI_INLINE vfloat<N> min(vfloat<N> a, vfloat<N> b) {
   return lane_by_lane<N>([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
 }
 template <int N>
-inline vfloat<N> max(vfloat<N> a, vfloat<N> b) {
+KIWAMI_INLINE vfloat<N> max(vfloat<N> a, vfloat<N> b) {
   return lane_by_lane<N>([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
 }
 template <int N>
-inline uint32_t less_equal(vfloat<N> a, vfloat<N> b) {
+KIWAMI_INLINE uint32_t less_equal(vfloat<N> a, vfloat<N> b) {
   return mask_of<N>([&](int i) { return a.lane[i] <= b.lane[i]; });
 }
 template <int N>
-inline uint32_t equal(vfloat<N> a, vfloat<N> b) {
+KIWAMI_INLINE uint32_t equal(vfloat<N> a, vfloat<N> b) {
   return mask_of<N>([&](int i) { return a.lane[i] == b.lane[i]; });
 }
 
 template <int N>
-inline vfloat<N> operator/(vfloat<N> a, vfloat<N> b) {
+KIWAMI_INLINE vfloat<N> operator/(vfloat<N> a, vfloat<N> b) {
   return lane_by_lane<N>([&](int i) { return a.lane[i] / b.lane[i]; });
 }
 template <int N>
-inline vfloat<N> absolute(vfloat<N> a) {
+KIWAMI_INLINE vfloat<N> absolute(vfloat<N> a) {
   return lane_by_lane<N>([&](int i) { return __builtin_fabsf(a.lane[i]); });
 }
 template <int N>
-inline vfloat<N> copy_sign(vfloat<N> magnitude, vfloat<N> sign) {
+KIWAMI_INLINE vfloat<N> copy_sign(vfloat<N> magnitude, vfloat<N> sign) {
   return lane_by_lane<N>(
       [&](int i) { return __builtin_copysignf(magnitude.lane[i], sign.lane[i]); });
 }
 /// By its bits: vectorised, GCC 12's own function ends in an internal error.
-inline bool is_negative(float a) {
+KIWAMI_INLINE bool is_negative(float a) {
   int32_t bits;
   __builtin_memcpy(&bits, &a, sizeof bits);
   return bits < 0;
 }
 template <int N>
-inline uint32_t sign_bits(vfloat<N> a) {
+KIWAMI_INLINE uint32_t sign_bits(vfloat<N> a) {
   return mask_of<N>([&](int i) { return is_negative(a.lane[i]); });
 }
 /// Lanes of x where a equals b, else of y.
 template <int N>
-inline vfloat<N> select_equal(vfloat<N> a, vfloat<N> b, vfloat<N> x, vfloat<N> y) {
+KIWAMI_INLINE vfloat<N> select_equal(vfloat<N> a, vfloat<N> b, vfloat<N> x, vfloat<N> y) {
   return lane_by_lane<N>([&](int i) { return a.lane[i] == b.lane[i] ? x.lane[i] : y.lane[i]; });
 }
 /// Lanes of x where the sign bit of sign is set, else of y.
 template <int N>
-inline vfloat<N> select_negative(vfloat<N> sign, vfloat<N> x, vfloat<N> y) {
+KIWAMI_INLINE vfloat<N> select_negative(vfloat<N> sign, vfloat<N> x, vfloat<N> y) {
   return lane_by_lane<N>([&](int i) { return is_negative(sign.lane[i]) ? x.lane[i] : y.lane[i]; });
 }
 
 /// In each of the first three lanes the greatest of them; they are not negative.
-inline vfloat<4> greatest_of_three(vfloat<4> a) {
+KIWAMI_INLINE vfloat<4> greatest_of_three(vfloat<4> a) {
   const float xy = a.lane[0] < a.lane[1] ? a.lane[1] : a.lane[0];
   return broadcast<4>(xy < a.lane[2] ? a.lane[2] : xy);
 }
-inline float with_bits(float value, uint32_t (*change)(uint32_t)) {
+KIWAMI_INLINE float with_bits(float value, uint32_t (*change)(uint32_t)) {
   uint32_t bits;
   __builtin_memcpy(&bits, &value, sizeof bits);
   bits = change(bits);
@@ -137,21 +143,21 @@ inline float with_bits(float value, uint32_t (*change)(uint32_t)) {
 }
 /// In each lane the greatest power of two that is not above it, or 0; the lanes are not negative.
 template <int N>
-inline vfloat<N> power_of_two_below(vfloat<N> a) {
+KIWAMI_INLINE vfloat<N> power_of_two_below(vfloat<N> a) {
   return lane_by_lane<N>([&](int i) {
     return with_bits(a.lane[i], [](uint32_t bits) { return bits & 0x7F800000u; });
   });
 }
 /// In each lane the inverse of a power of two, 2^-126 to 2^126.
 template <int N>
-inline vfloat<N> inverse_of_power(vfloat<N> a) {
+KIWAMI_INLINE vfloat<N> inverse_of_power(vfloat<N> a) {
   return lane_by_lane<N>([&](int i) {
     return with_bits(a.lane[i], [](uint32_t bits) { return (254u << 23) - bits; });
   });
 }
-inline float first_lane(vfloat<4> a) { return a.lane[0]; }
+KIWAMI_INLINE float first_lane(vfloat<4> a) { return a.lane[0]; }
 /// The bits of the first lane.
-inline uint32_t first_bits(vfloat<4> a) {
+KIWAMI_INLINE uint32_t first_bits(vfloat<4> a) {
   uint32_t bits;
   __builtin_memcpy(&bits, a.lane, sizeof bits);
   return bits;
@@ -160,7 +166,7 @@ inline uint32_t first_bits(vfloat<4> a) {
 /// Bits that are set in each lane of marks, and those of bit where a <= b; and which lanes have
 /// any.
 template <int N>
-inline vfloat<N> mark_less_equal(vfloat<N> marks, vfloat<N> a, vfloat<N> b, uint32_t bit) {
+KIWAMI_INLINE vfloat<N> mark_less_equal(vfloat<N> marks, vfloat<N> a, vfloat<N> b, uint32_t bit) {
   return lane_by_lane<N>([&](int i) {
     uint32_t bits;
     __builtin_memcpy(&bits, &marks.lane[i], sizeof bits);
@@ -171,7 +177,7 @@ inline vfloat<N> mark_less_equal(vfloat<N> marks, vfloat<N> a, vfloat<N> b, uint
   });
 }
 template <int N>
-inline uint32_t marked_lanes(vfloat<N> marks) {
+KIWAMI_INLINE uint32_t marked_lanes(vfloat<N> marks) {
   return mask_of<N>([&](int i) {
     uint32_t bits;
     __builtin_memcpy(&bits, &marks.lane[i], sizeof bits);
@@ -181,7 +187,7 @@ inline uint32_t marked_lanes(vfloat<N> marks) {
 
 /// Four columns from N rows of four floats, stride bytes apart.
 template <int N>
-inline void load_rows(const unsigned char* rows, size_t stride, vfloat<N> (&columns)[4]) {
+KIWAMI_INLINE void load_rows(const unsigned char* rows, size_t stride, vfloat<N> (&columns)[4]) {
   for (int i = 0; i < N; ++i) {
     float row[4];
     __builtin_memcpy(row, rows + static_cast<size_t>(i) * stride, sizeof row);
@@ -190,7 +196,8 @@ inline void load_rows(const unsigned char* rows, size_t stride, vfloat<N> (&colu
 }
 /// Writes row i of four columns to the floats that lie offset bytes into *targets[i].
 template <int N, typename Target>
-inline void store_rows(const vfloat<N> (&columns)[4], Target* const* targets, size_t offset) {
+KIWAMI_INLINE void store_rows(const vfloat<N> (&columns)[4], Target* const* targets,
+                              size_t offset) {
   for (int i = 0; i < N; ++i) {
     const float row[4] = {columns[0].lane[i], columns[1].lane[i], columns[2].lane[i],
                           columns[3].lane[i]};
@@ -198,13 +205,13 @@ inline void store_rows(const vfloat<N> (&columns)[4], Target* const* targets, si
   }
 }
 template <int N>
-inline float least_lane(vfloat<N> a) {
+KIWAMI_INLINE float least_lane(vfloat<N> a) {
   float least = a.lane[0];
   for (int i = 1; i < N; ++i) least = a.lane[i] < least ? a.lane[i] : least;
   return least;
 }
 template <int N>
-inline float greatest_lane(vfloat<N> a) {
+KIWAMI_INLINE float greatest_lane(vfloat<N> a) {
   float most = a.lane[0];
   for (int i = 1; i < N; ++i) most = a.lane[i] > most ? a.lane[i] : most;
   return most;
@@ -215,38 +222,40 @@ struct vdouble4 {
 };
 
 template <typename Operation>
-inline vdouble4 double_by_double(Operation operation) {
+KIWAMI_INLINE vdouble4 double_by_double(Operation operation) {
   vdouble4 result;
   for (int i = 0; i < 4; ++i) result.lane[i] = operation(i);
   return result;
 }
-inline vdouble4 load_widened(const float* from) {
+KIWAMI_INLINE vdouble4 load_widened(const float* from) {
   return double_by_double([&](int i) { return static_cast<double>(from[i]); });
 }
-inline vdouble4 broadcast_double(double value) {
+KIWAMI_INLINE vdouble4 broadcast_double(double value) {
   return double_by_double([&](int) { return value; });
 }
-inline void store(double* to, vdouble4 a) {
+KIWAMI_INLINE void store(double* to, vdouble4 a) {
   for (int i = 0; i < 4; ++i) to[i] = a.lane[i];
 }
-inline void store_rounded(float* to, vdouble4 a) {
+KIWAMI_INLINE void store_rounded(float* to, vdouble4 a) {
   for (int i = 0; i < 4; ++i) to[i] = static_cast<float>(a.lane[i]);
 }
-inline vdouble4 operator+(vdouble4 a, vdouble4 b) {
+KIWAMI_INLINE vdouble4 operator+(vdouble4 a, vdouble4 b) {
   return double_by_double([&](int i) { return a.lane[i] + b.lane[i]; });
 }
-inline vdouble4 operator-(vdouble4 a, vdouble4 b) {
+KIWAMI_INLINE vdouble4 operator-(vdouble4 a, vdouble4 b) {
   return double_by_double([&](int i) { return a.lane[i] - b.lane[i]; });
 }
-inline vdouble4 operator*(vdouble4 a, vdouble4 b) {
+KIWAMI_INLINE vdouble4 operator*(vdouble4 a, vdouble4 b) {
   return double_by_double([&](int i) { return a.lane[i] * b.lane[i]; });
 }
-inline vdouble4 operator/(vdouble4 a, vdouble4 b) {
+KIWAMI_INLINE vdouble4 operator/(vdouble4 a, vdouble4 b) {
   return double_by_double([&](int i) { return a.lane[i] / b.lane[i]; });
 }
 
 }  // namespace
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami
+
+#undef KIWAMI_INLINE
 
 #include "scalar/uniform.h"

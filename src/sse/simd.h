@@ -14,7 +14,10 @@ struct Uniform3 {
   vfloat<N> lane[3];
 
   explicit Uniform3(const float* from)
-      : lane{broadcast<N>(from[0]), broadcast<N>(from[1]), broadcast<N>(from[2])} {}
+      : lane{broadcast<N>(from[0]), broadcast<N>(from[1]), broadcast<N>(from[2])} {
+    // Forget that the lanes are equal: knowing it, GCC reckons lane by lane.
+    asm("" : "+m"(lane));
+  }
   vfloat<N> operator[](int i) const { return lane[i]; }
 };
 

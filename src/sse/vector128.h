@@ -23,11 +23,17 @@ struct vfloat<4> {
 template <int N>
 inline vfloat<N> load(const float* from);
 template <int N>
+inline vfloat<N> load_from_bytes(const void* from);
+template <int N>
 inline vfloat<N> broadcast(float value);
 
 template <>
 inline vfloat<4> load<4>(const float* from) {
   return {simde_mm_loadu_ps(from)};
+}
+template <>
+inline vfloat<4> load_from_bytes<4>(const void* from) {
+  return {simde_mm_loadu_ps(static_cast<const float*>(from))};
 }
 template <>
 inline vfloat<4> broadcast<4>(float value) {
