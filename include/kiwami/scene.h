@@ -33,7 +33,11 @@ enum {
                                         * most this part of the triangles, 0 to 4 */
   KIWAMI_PARAMETER_SPLIT_ALPHA = 12,   /* spatial splits: only where boxes overlap by more than this
                                         * part of the root's area, 0 to 1 */
-  KIWAMI_PARAMETER_AAC_QUALITY = 17    /* KIWAMI_BUILDER_AAC: 1: high, in larger cells; 0: fast */
+  KIWAMI_PARAMETER_BIN_HALVING = 13,   /* binned SAH: every so many levels the bins are halved, down
+                                        * to 8, 1 to 32; 0: never */
+  KIWAMI_PARAMETER_REASSIGN = 14,   /* binned SAH: 1: what a split's plane cuts goes to the cheaper
+                                     * side; 0: to that of its centroid */
+  KIWAMI_PARAMETER_AAC_QUALITY = 17 /* KIWAMI_BUILDER_AAC: 1: high, in larger cells; 0: fast */
 };
 
 /* The stages of a build that have several methods. */

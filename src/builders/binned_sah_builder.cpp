@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "builders/joined_nodes.h"
+#include "builders/reassignment.h"
 #include "builders/sah_split.h"
 
 namespace kiwami {
@@ -70,11 +71,28 @@ class SubtreeBuilder {
     const uint32_t count = end - begin;
     SplitDecision decision;
     if (decide_without_bins(count, depth, config_, decision)) return decision;
-    mapping_ = BinMapping(bounds.centroids, BinnedSahBuilder::bins_of(count, config_));
+    mapping_ = BinMapping(bounds.centroids, BinnedSahBuilder::bins_of(count, depth, config_));
     bins_.clear(mapping_.bin_count);
     const BuildPrimitive* from = buffers_[side].data();
     for (uint32_t i = begin; i < end; ++i) bins_.add(from[i], mapping_);
-    return decide_by_bins(bins_, mapping_, bounds, count, config_);
+    decision = decide_by_bins(bins_, mapping_, bounds, count, config_);
+    if (config_.reassigns && decision.kind == SplitDecision::kPlane) {
+      reassign(begin, end, side, decision);
+    }
+    return decision;
+  }
+
+  void reassign(uint32_t begin, uint32_t end, int side, SplitDecision& decision) {
+    BuildPrimitive* primitives = buffers_[side].data();
+    Reassignment reassignment(SplitPlane(mapping_, decision.axis, decision.last_left_bin));
+    TwoSides pure, sides;
+    for (uint32_t i = begin; i < end; ++i) reassignment.add_pure(primitives[i], pure);
+    if (!reassignment.set_pure(pure, end - begin)) return;
+    for (uint32_t i = begin; i < end; ++i) {
+      primitives[i].reserved = reassignment.side_of(primitives[i]);
+      sides.add(primitives[i].reserved, VectorBounds::of(primitives[i]));
+    }
+    take_if_cheaper(sides, config_.block_size, decision);
   }
 
   void partition(const SplitDecision& decision, uint32_t begin, uint32_t end, int side,
@@ -90,9 +108,10 @@ class SubtreeBuilder {
       }
       return;
     }
+    const bool by_marks = decision.kind == SplitDecision::kMarks;
     const SplitPlane plane(mapping_, decision.axis, decision.last_left_bin);
     for (uint32_t i = begin; i < end; ++i) {
-      const uint32_t is_right = plane.is_right(from[i]);
+      const uint32_t is_right = by_marks ? from[i].reserved : plane.is_right(from[i]);
       child[is_right].extend(from[i]);
       to[cursor[is_right]++] = from[i];
     }
@@ -119,6 +138,7 @@ class SubtreeBuilder {
 struct Block {
   uint32_t open_node;
   uint32_t begin, end;
+  uint32_t left_count;
   uint32_t cursor[2];  ///< where its primitives go, left and right
   RangeBounds child[2];
 };
@@ -218,7 +238,7 @@ class Build {
       level[i].first_block = static_cast<uint32_t>(blocks.size());
       for (uint32_t begin = open.begin; begin < open.end;) {
         const uint32_t end = begin + std::min(block_size_, open.end - begin);
-        blocks.push_back({static_cast<uint32_t>(i), begin, end, {0, 0}, {}});
+        blocks.push_back({static_cast<uint32_t>(i), begin, end, 0, {0, 0}, {}});
         begin = end;
       }
       level[i].block_end = static_cast<uint32_t>(blocks.size());
@@ -230,7 +250,7 @@ class Build {
   void decide_level(GrowingArray<LevelNode>& level, Array<Block>& blocks, const uint32_t* from) {
     parallel_.for_each(level.size(), [&](size_t i) {
       LevelNode& node = level[i];
-      const uint32_t bins = BinnedSahBuilder::bins_of(node.open.count(), config_);
+      const uint32_t bins = BinnedSahBuilder::bins_of(node.open.count(), node.open.depth, config_);
       node.mapping = BinMapping(node.open.bounds.centroids, bins);
     });
     Array<SahBins> block_bins(memory_, blocks.size());
@@ -252,8 +272,74 @@ class Build {
         }
         node.decision = decide_by_bins(bins, node.mapping, open.bounds, open.count(), config_);
       }
-      place_blocks(node, blocks, block_bins);
+      count_left(node, blocks, block_bins);
     });
+    if (config_.reassigns) reassign_level(level, blocks, from);
+    parallel_.for_each(level.size(), [&](size_t i) { place_blocks(level[i], blocks); });
+  }
+
+  static void count_left(const LevelNode& node, Array<Block>& blocks,
+                         const Array<SahBins>& block_bins) {
+    const SplitDecision& decision = node.decision;
+    const uint32_t middle = node.open.begin + decision.left_count;
+    for (uint32_t i = node.first_block; i < node.block_end; ++i) {
+      Block& block = blocks[i];
+      block.left_count = decision.kind == SplitDecision::kPlane
+                             ? block_bins[i].count_left(decision.axis, decision.last_left_bin)
+                             : std::clamp(middle, block.begin, block.end) - block.begin;
+    }
+  }
+
+  /// Lets primitives that a plane cuts go to the cheaper side.
+  void reassign_level(GrowingArray<LevelNode>& level, Array<Block>& blocks, const uint32_t* from) {
+    Array<TwoSides> sides(memory_, blocks.size());
+    Array<Reassignment> reassignments(memory_, level.size());
+    Array<uint8_t> is_judged(memory_, level.size());
+    const auto reassignment_of = [](const LevelNode& node) {
+      const SplitDecision& decision = node.decision;
+      return Reassignment(SplitPlane(node.mapping, decision.axis, decision.last_left_bin));
+    };
+    parallel_.for_each(blocks.size(), [&](size_t i) {
+      sides[i] = TwoSides();
+      const LevelNode& node = level[blocks[i].open_node];
+      if (node.decision.kind != SplitDecision::kPlane) return;
+      const Reassignment reassignment = reassignment_of(node);
+      for (uint32_t k = blocks[i].begin; k < blocks[i].end; ++k) {
+        reassignment.add_pure(primitives_[from[k]], sides[i]);
+      }
+    });
+    parallel_.for_each(level.size(), [&](size_t i) {
+      const LevelNode& node = level[i];
+      is_judged[i] = 0;
+      if (node.decision.kind != SplitDecision::kPlane) return;
+      reassignments[i] = reassignment_of(node);
+      is_judged[i] = reassignments[i].set_pure(sum_of(node, sides), node.open.count());
+    });
+    parallel_.for_each(blocks.size(), [&](size_t i) {
+      sides[i] = TwoSides();
+      if (!is_judged[blocks[i].open_node]) return;
+      const Reassignment& reassignment = reassignments[blocks[i].open_node];
+      for (uint32_t k = blocks[i].begin; k < blocks[i].end; ++k) {
+        BuildPrimitive& primitive = primitives_[from[k]];
+        primitive.reserved = reassignment.side_of(primitive);
+        sides[i].add(primitive.reserved, VectorBounds::of(primitive));
+      }
+    });
+    parallel_.for_each(level.size(), [&](size_t i) {
+      LevelNode& node = level[i];
+      if (!is_judged[i]) return;
+      take_if_cheaper(sum_of(node, sides), config_.block_size, node.decision);
+      if (node.decision.kind != SplitDecision::kMarks) return;
+      for (uint32_t k = node.first_block; k < node.block_end; ++k) {
+        blocks[k].left_count = sides[k].count[0];
+      }
+    });
+  }
+
+  static TwoSides sum_of(const LevelNode& node, const Array<TwoSides>& sides) {
+    TwoSides sum;
+    for (uint32_t i = node.first_block; i < node.block_end; ++i) sum.merge(sides[i]);
+    return sum;
   }
 
   /// Processors do not foresee rising addresses with gaps.
@@ -265,22 +351,14 @@ class Build {
   }
 
   /// The scan that makes the parallel partition stable.
-  static void place_blocks(const LevelNode& node, Array<Block>& blocks,
-                           const Array<SahBins>& block_bins) {
-    const SplitDecision& decision = node.decision;
-    const uint32_t middle = node.open.begin + decision.left_count;
-    uint32_t left = node.open.begin, right = middle;
+  static void place_blocks(const LevelNode& node, Array<Block>& blocks) {
+    uint32_t left = node.open.begin, right = left + node.decision.left_count;
     for (uint32_t i = node.first_block; i < node.block_end; ++i) {
       Block& block = blocks[i];
-      const uint32_t size = block.end - block.begin;
-      const uint32_t left_size =
-          decision.kind == SplitDecision::kPlane
-              ? block_bins[i].count_left(decision.axis, decision.last_left_bin)
-              : std::clamp(middle, block.begin, block.end) - block.begin;
       block.cursor[0] = left;
       block.cursor[1] = right;
-      left += left_size;
-      right += size - left_size;
+      left += block.left_count;
+      right += block.end - block.begin - block.left_count;
     }
   }
 
@@ -288,13 +366,16 @@ class Build {
     RangeBounds child[2] = {RangeBounds::empty(), RangeBounds::empty()};
     uint32_t cursor[2] = {block.cursor[0], block.cursor[1]};
     const SplitDecision& decision = node.decision;
-    const bool by_plane = decision.kind == SplitDecision::kPlane;
+    const bool by_index = decision.kind == SplitDecision::kIndex;
+    const bool by_marks = decision.kind == SplitDecision::kMarks;
     const SplitPlane plane(node.mapping, decision.axis, decision.last_left_bin);
     const uint32_t middle = node.open.begin + decision.left_count;
     for (uint32_t i = block.begin; i < block.end; ++i) {
       prefetch_after(i, block.end, from);
       const BuildPrimitive& primitive = primitives_[from[i]];
-      const uint32_t is_right = by_plane ? plane.is_right(primitive) : i >= middle;
+      const uint32_t is_right = by_index   ? i >= middle
+                                : by_marks ? primitive.reserved
+                                           : plane.is_right(primitive);
       child[is_right].extend(primitive);
       to[cursor[is_right]++] = from[i];
     }
@@ -355,8 +436,12 @@ class Build {
 
 }  // namespace
 
-uint32_t BinnedSahBuilder::bins_of(uint32_t primitive_count, const Config& config) {
-  const uint32_t most = std::clamp(config.bin_count, 2u, SahBins::kMaxBins);
+uint32_t BinnedSahBuilder::bins_of(uint32_t primitive_count, uint32_t depth, const Config& config) {
+  uint32_t most = std::clamp(config.bin_count, 2u, SahBins::kMaxBins);
+  if (config.bin_halving_depth != 0) {
+    const uint32_t halvings = std::min((depth - 1) / config.bin_halving_depth, 31u);
+    most = std::min(most, std::max(most >> halvings, 8u));
+  }
   return std::min(most, 4 + primitive_count / 4);
 }
 

@@ -17,11 +17,15 @@ class BinnedSahBuilder {
   struct Config : SahConfig {
     /// Bins per axis, 2 to 32; nodes of few primitives use fewer (see bins_of).
     uint32_t bin_count = 16;
+    /// Every so many levels the bins are halved, down to 8; 0: never.
+    uint32_t bin_halving_depth = 0;
+    /// Let primitives that the plane of a split cuts go to the cheaper side (see Reassignment).
+    bool reassigns = false;
   };
 
-  /// The bins per axis that a node of so many primitives uses: more than its primitives would only
-  /// be cleared and scanned in vain.
-  static uint32_t bins_of(uint32_t primitive_count, const Config& config);
+  /// The bins per axis that a node of so many primitives uses, the root being at depth 1: more than
+  /// its primitives would only be cleared and scanned in vain.
+  static uint32_t bins_of(uint32_t primitive_count, uint32_t depth, const Config& config);
 
   /// Takes the primitives, to free them before the tree is complete: 40 bytes a primitive and the
   /// nodes are the most that a build holds.

@@ -115,6 +115,7 @@ struct SplitPlane {
   float origin, scale, first_right_bin;
   int axis;
 
+  SplitPlane() = default;
   SplitPlane(const BinMapping& mapping, int split_axis, uint32_t last_left_bin)
       : origin(BinMapping::axis_of(mapping.origin, split_axis)),
         scale(BinMapping::axis_of(mapping.scale, split_axis)),
@@ -122,9 +123,11 @@ struct SplitPlane {
         axis(split_axis) {}
 
   bool is_right(const BuildPrimitive& primitive) const {
-    const float centroid = primitive.lower[axis] + primitive.upper[axis];
-    return (centroid - origin) * scale >= first_right_bin;
+    return is_right_of(primitive.lower[axis] + primitive.upper[axis]);
   }
+
+  /// Of a doubled coordinate.
+  bool is_right_of(float doubled) const { return (doubled - origin) * scale >= first_right_bin; }
 };
 
 /// Boxes and counts of the bins of all three axes.

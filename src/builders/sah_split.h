@@ -14,12 +14,14 @@ struct SplitDecision {
   enum Kind : uint32_t {
     kLeaf,
     kPlane,  ///< by the bins of an axis
-    kIndex   ///< the first left_count primitives go left
+    kIndex,  ///< the first left_count primitives go left
+    kMarks   ///< by BuildPrimitive::reserved, 1 for the right side
   };
   Kind kind;
   int axis;
   uint32_t last_left_bin;
   uint32_t left_count;
+  double cost = 0.0;  ///< of the areas and blocks of both sides, where the node has an area
 };
 
 /// The best plane of one set of bins, or none (cost is infinite).
@@ -116,7 +118,8 @@ inline SplitDecision decide_by_bins(const SahBins& bins, const BinMapping& mappi
     return {SplitDecision::kLeaf, 0, 0, 0};
   }
   if (!found) return split_by_index(count, config.block_size);
-  return {SplitDecision::kPlane, best.axis, best.last_left_bin, best.left_count};
+  return {SplitDecision::kPlane, best.axis, best.last_left_bin, best.left_count,
+          area > 0.0 ? best.cost : 0.0};
 }
 
 }  // namespace kiwami

@@ -59,7 +59,9 @@ SahConfig sah_config(const SceneParameters& parameters, uint32_t width) {
 }
 
 BinnedSahBuilder::Config binned_sah_config(const SceneParameters& parameters, uint32_t width) {
-  return {sah_config(parameters, width), parameters.whole(KIWAMI_PARAMETER_BIN_COUNT)};
+  return {sah_config(parameters, width), parameters.whole(KIWAMI_PARAMETER_BIN_COUNT),
+          parameters.whole(KIWAMI_PARAMETER_BIN_HALVING),
+          parameters.whole(KIWAMI_PARAMETER_REASSIGN) != 0};
 }
 
 SpatialSplitBuilder::Config spatial_split_config(const SceneParameters& parameters,

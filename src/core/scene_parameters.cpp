@@ -30,6 +30,8 @@ constexpr NumberedBounds kBounds[] = {
     {KIWAMI_PARAMETER_BUILDER, {0, 0, KIWAMI_BUILDER_BINNED_SAH, true}},
     {KIWAMI_PARAMETER_SPLIT_BUDGET, {0.0, 4.0, 0.3, false}},
     {KIWAMI_PARAMETER_SPLIT_ALPHA, {0.0, 1.0, 1e-5, false}},
+    {KIWAMI_PARAMETER_BIN_HALVING, {0, 32, 0, true}},
+    {KIWAMI_PARAMETER_REASSIGN, {0, 1, 0, true}},
     {KIWAMI_PARAMETER_AAC_QUALITY, {0, 1, 1, true}},
 };
 

@@ -34,7 +34,7 @@ class ExhaustiveSplit {
   ExhaustiveSplit(const std::vector<BuildPrimitive>& primitives, const Config& config)
       : primitives_(primitives), config_(config) {
     const auto count = static_cast<uint32_t>(primitives.size());
-    const uint32_t bins = BinnedSahBuilder::bins_of(count, config);
+    const uint32_t bins = BinnedSahBuilder::bins_of(count, 1, config);
     for (int axis = 0; axis < 3; ++axis) {
       for (uint32_t bin = 0; bin + 1 < bins; ++bin) try_plane(axis, bin, bins);
     }
@@ -187,6 +187,7 @@ TEST_F(BinaryBuilder, DegenerateInputsGiveValidTrees) {
       Config config = config_of(leaf_size);
       EXPECT_NO_THROW(build(named.mesh, config, one_thread_));
       config.subtree_size = 16;
+      config.reassigns = leaf_size != 1;
       EXPECT_NO_THROW(build(named.mesh, config, one_thread_));
     }
   }
@@ -226,7 +227,8 @@ TEST_F(BinaryBuilder, TreesAreEqualOnAnyNumberOfThreads) {
   const Mesh meshes[] = {terrain(120), soup(30000, seed()), spheres(30000, seed())};
   for (const Mesh& mesh : meshes) {
     for (const uint32_t leaf_size : {1u, 8u}) {
-      const Config config = config_of(leaf_size);
+      Config config = config_of(leaf_size);
+      config.reassigns = leaf_size == 8;
       const BinaryBvh reference = build(mesh, config, one_thread_);
       for (const unsigned threads : {2u, 4u}) {
         expect_same(build(mesh, config, Threads(threads)), reference);
@@ -234,6 +236,81 @@ TEST_F(BinaryBuilder, TreesAreEqualOnAnyNumberOfThreads) {
       expect_same(build(mesh, config, plain_threads), reference);
     }
   }
+}
+
+TEST_F(BinaryBuilder, BinsAreHalvedWithDepthDownToEight) {
+  Config config;
+  config.bin_count = 32;
+  EXPECT_EQ(BinnedSahBuilder::bins_of(100000, 40, config), 32u);
+  config.bin_halving_depth = 2;
+  const uint32_t expected[] = {32, 32, 16, 16, 8, 8, 8};
+  for (uint32_t i = 0; i < 7; ++i) {
+    EXPECT_EQ(BinnedSahBuilder::bins_of(100000, i + 1, config), expected[i]) << "depth " << i + 1;
+  }
+  EXPECT_EQ(BinnedSahBuilder::bins_of(100000, 72, config), 8u);
+  EXPECT_EQ(BinnedSahBuilder::bins_of(10, 1, config), 6u);
+  config.bin_count = 4;
+  EXPECT_EQ(BinnedSahBuilder::bins_of(100000, 9, config), 4u);
+}
+
+TEST_F(BinaryBuilder, APrimitiveThatFitsTheOtherSideBetterIsReassigned) {
+  // A flat stack, a long row of small triangles beside it, and a triangle that sticks out of the
+  // stack with its centroid at the row: there it would make the box of the whole row wide.
+  Mesh mesh;
+  std::vector<uint32_t> stack, row;
+  for (uint32_t i = 0; i < 20; ++i) {
+    const float z = 0.04f * static_cast<float>(i);
+    mesh.add({2.9f, 0, z}, {3.1f, 0, z}, {3, 10, z});
+    stack.push_back(i);
+  }
+  for (uint32_t i = 20; i < 28; ++i) {
+    const float y = 10.0f * static_cast<float>(i) - 230.0f;
+    mesh.add({7, y, 0}, {8, y, 0.5f}, {7, y + 1, 0.7f});
+    row.push_back(i);
+  }
+  mesh.add({3, 5, 0.3f}, {12, 5, 0.3f}, {12, 5.1f, 0.3f});
+  stack.push_back(28);
+  row.push_back(28);
+  Config config = config_of(1);
+  const auto ids_beside_it = [&](bool reassigns) {
+    config.reassigns = reassigns;
+    const BinaryBvh bvh = build(mesh, config, one_thread_);
+    std::vector<uint32_t> ids = ids_below(bvh, 1);
+    if (std::find(ids.begin(), ids.end(), 28u) == ids.end()) ids = ids_below(bvh, 2);
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  };
+  EXPECT_EQ(ids_beside_it(false), row);
+  EXPECT_EQ(ids_beside_it(true), stack);
+}
+
+/// Of the split at the root.
+double root_cost(const BinaryBvh& bvh, const Config& config) {
+  double cost = 0.0;
+  for (uint32_t child = 1; child < 3; ++child) {
+    const auto count = static_cast<uint32_t>(ids_below(bvh, child).size());
+    cost += static_cast<double>(bvh.nodes[child].bounds.half_area()) *
+            ((count + config.block_size - 1) / config.block_size);
+  }
+  return cost;
+}
+
+TEST_F(BinaryBuilder, ReassignmentNeverCostsMore) {
+  int cheaper = 0;
+  for (uint32_t trial = 0; trial < 100; ++trial) {
+    const Mesh mesh = soup(200 + trial, seed() + trial);
+    Config config = config_of(4);
+    for (const uint32_t subtree_size : {~0u, 16u}) {
+      config.subtree_size = subtree_size;
+      config.reassigns = false;
+      const double plain = root_cost(build(mesh, config, one_thread_), config);
+      config.reassigns = true;
+      const double reassigned = root_cost(build(mesh, config, one_thread_), config);
+      EXPECT_LE(reassigned, plain);
+      cheaper += reassigned < plain;
+    }
+  }
+  EXPECT_GT(cheaper, 10);
 }
 
 /// The shape alone: leaves as runs of ids, left to right, with their depths.
@@ -252,14 +329,18 @@ void append_shape(const BinaryBvh& bvh, uint32_t index, uint32_t depth,
 
 TEST_F(BinaryBuilder, ShapeDoesNotDependOnWhereSubtreesBegin) {
   for (const Mesh& mesh : {soup(20000, seed()), terrain(90)}) {
-    std::vector<uint32_t> reference;
-    for (const uint32_t subtree_size : {~0u, 10000u, 1000u, 20u}) {
-      Config config = config_of(8);
-      config.subtree_size = subtree_size;
-      std::vector<uint32_t> shape;
-      append_shape(build(mesh, config, one_thread_), 0, 1, shape);
-      if (reference.empty()) reference = shape;
-      EXPECT_EQ(shape, reference) << "subtrees of " << subtree_size;
+    for (const bool reassigns : {false, true}) {
+      std::vector<uint32_t> reference;
+      for (const uint32_t subtree_size : {~0u, 10000u, 1000u, 20u}) {
+        Config config = config_of(8);
+        config.subtree_size = subtree_size;
+        config.reassigns = reassigns;
+        config.bin_halving_depth = reassigns ? 3 : 0;
+        std::vector<uint32_t> shape;
+        append_shape(build(mesh, config, one_thread_), 0, 1, shape);
+        if (reference.empty()) reference = shape;
+        EXPECT_EQ(shape, reference) << "subtrees of " << subtree_size;
+      }
     }
   }
 }

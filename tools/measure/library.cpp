@@ -36,6 +36,8 @@ constexpr struct {
                    {"builder", KIWAMI_PARAMETER_BUILDER},
                    {"split_budget", KIWAMI_PARAMETER_SPLIT_BUDGET},
                    {"split_alpha", KIWAMI_PARAMETER_SPLIT_ALPHA},
+                   {"bin_halving", KIWAMI_PARAMETER_BIN_HALVING},
+                   {"reassign", KIWAMI_PARAMETER_REASSIGN},
                    {"aac_quality", KIWAMI_PARAMETER_AAC_QUALITY}};
 
 std::string parameter_names() {
