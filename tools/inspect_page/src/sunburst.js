@@ -11,6 +11,7 @@ const mostRings = 9;
 const fewestRings = 3;
 const leastCoverage = 0.06;  // of the turn: rings that hold less wait for a zoom
 const middleShare = 0.2;  // of the radius
+const leastMiddleForText = 22;  // pixels
 const leastPixels = 0.5;  // an arc that is narrower is drawn together with its neighbours
 const strokePixels = 3;
 const zoomMilliseconds = 420;
@@ -283,6 +284,7 @@ export class Sunburst {
       context.lineWidth = 2;
       context.stroke();
     }
+    if (geometry.middle < leastMiddleForText) return;
     const family = getComputedStyle(this.canvas).fontFamily;
     const size = Math.max(Math.min(geometry.middle / 3.6, 15), 9);
     context.textAlign = 'center';
