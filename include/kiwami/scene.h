@@ -43,7 +43,8 @@ enum {
 /* The stages of a build that have several methods. */
 enum {
   KIWAMI_STAGE_BUILDER = 1,    /* primitives to a binary tree, by KIWAMI_PARAMETER_BUILDER */
-  KIWAMI_STAGE_OPTIMIZER = 2,  /* changes to the binary tree, by kiwami_scene_set_optimizers */
+  KIWAMI_STAGE_OPTIMIZER = 2,  /* changes to the binary or the wide tree, by
+                                * kiwami_scene_set_optimizers */
   KIWAMI_STAGE_CONTRACTION = 3 /* binary tree to wide tree, by KIWAMI_PARAMETER_CONTRACTION */
 };
 
@@ -62,7 +63,10 @@ enum {
 };
 enum {
   KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1, /* subtrees move to where the area shrinks most */
-  KIWAMI_OPTIMIZER_ROTATION = 2              /* near relatives change places */
+  KIWAMI_OPTIMIZER_ROTATION = 2,             /* near relatives change places */
+  KIWAMI_OPTIMIZER_REORDER_SATO = 6,         /* for any-hit rays: large children first */
+  KIWAMI_OPTIMIZER_REORDER_NARY = 7          /* for any-hit rays: children first that stop most rays
+                                              * for their cost */
 };
 enum {
   KIWAMI_CONTRACTION_SURFACE_AREA = 0, /* the largest child is opened first */
@@ -133,7 +137,8 @@ KIWAMI_API kiwami_result kiwami_scene_set_parameter(kiwami_scene* scene, uint32_
 KIWAMI_API kiwami_result kiwami_parameter_bounds(uint32_t parameter, double* lowest,
                                                  double* highest, double* preset);
 
-/* Sets which optimisers the next commit runs on the binary tree, one after the other.
+/* Sets which optimisers the next commit runs: those that act on the binary tree one after the
+ * other, and, when it has become wide, those that act on the wide tree.
  *   methods   count numbers of KIWAMI_OPTIMIZER_*, copied; NULL only if count is 0
  *   count     at most KIWAMI_MAX_OPTIMIZERS; 0: none, the default
  *   errors    INVALID_ARGUMENT: scene or methods is NULL, count is too large, or a number is no

@@ -13,10 +13,13 @@
 #include "builders/spatial_split_builder.h"
 #include "builders/str_builder.h"
 #include "builders/sweep_sah_builder.h"
+#include "bvh/representative_rays.h"
 #include "bvh/tree_edit.h"
 #include "core/error.h"
+#include "optimizers/nary_reorder.h"
 #include "optimizers/reinsertion.h"
 #include "optimizers/rotation.h"
+#include "optimizers/sato_reorder.h"
 
 namespace kiwami {
 namespace {
@@ -37,11 +40,12 @@ constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_MINI_TREE, "mini_tree"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_OIBVH, "oibvh"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_STR, "str"},
-    {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_PARALLEL_REINSERTION, "parallel_reinsertion"},
-    {KIWAMI_STAGE_OPTIMIZER, KIWAMI_OPTIMIZER_ROTATION, "rotation"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_OPTIMAL, "optimal"},
 };
+
+/// Rays that are sampled where the user gives none.
+constexpr size_t kRayCount = 16384;
 
 SahCosts costs_of(const SceneParameters& parameters, uint32_t width) {
   return {static_cast<float>(parameters[KIWAMI_PARAMETER_NODE_COST]),
@@ -116,14 +120,50 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const TriangleSource& so
   }
 }
 
-/// One call of an optimiser.
-void run_optimizer(uint32_t method, BinaryBvh& bvh, Memory& memory, const Parallel& parallel) {
-  switch (method) {
-    case KIWAMI_OPTIMIZER_PARALLEL_REINSERTION:
-      return optimize_by_parallel_reinsertion(bvh, {}, memory, parallel);
-    case KIWAMI_OPTIMIZER_ROTATION:
-      return optimize_by_rotation(bvh, {}, memory);
+/// What an optimiser may know beside its tree.
+struct OptimizerInput {
+  const TriangleSource& source;
+  SahCosts costs;
+  Memory& memory;
+  const Parallel& parallel;
+};
+
+/// An optimiser acts on one of the two trees: the function of the other one is null.
+struct Optimizer {
+  uint32_t number;
+  const char* name;
+  void (*on_binary)(BinaryBvh& bvh, const OptimizerInput& input);
+  void (*on_wide)(WideTree& tree, const OptimizerInput& input);
+};
+
+constexpr Optimizer kOptimizers[] = {
+    {KIWAMI_OPTIMIZER_PARALLEL_REINSERTION, "parallel_reinsertion",
+     [](BinaryBvh& bvh, const OptimizerInput& input) {
+       optimize_by_parallel_reinsertion(bvh, {}, input.memory, input.parallel);
+     },
+     nullptr},
+    {KIWAMI_OPTIMIZER_ROTATION, "rotation",
+     [](BinaryBvh& bvh, const OptimizerInput& input) {
+       optimize_by_rotation(bvh, {}, input.memory);
+     },
+     nullptr},
+    {KIWAMI_OPTIMIZER_REORDER_SATO, "reorder_sato", nullptr,
+     [](WideTree& tree, const OptimizerInput& input) {
+       reorder_by_surface_area(tree, input.memory, input.parallel);
+     }},
+    {KIWAMI_OPTIMIZER_REORDER_NARY, "reorder_nary", nullptr,
+     [](WideTree& tree, const OptimizerInput& input) {
+       const Array<RepresentativeRay> rays = sample_rays(input.source, kRayCount, input.memory);
+       const NaryReorderConfig config = {input.costs.node_cost, input.costs.leaf_cost};
+       reorder_by_rays(tree, rays, config, input.memory, input.parallel);
+     }},
+};
+
+const Optimizer* find_optimizer(uint32_t number) {
+  for (const Optimizer& optimizer : kOptimizers) {
+    if (optimizer.number == number) return &optimizer;
   }
+  return nullptr;
 }
 
 ContractionMethod contraction_of(const SceneParameters& parameters) {
@@ -138,6 +178,10 @@ uint32_t leaf_size_of(const SceneParameters& parameters, uint32_t width) {
 }  // namespace
 
 const char* method_name(uint32_t stage, uint32_t number) {
+  if (stage == KIWAMI_STAGE_OPTIMIZER) {
+    const Optimizer* optimizer = find_optimizer(number);
+    return optimizer ? optimizer->name : nullptr;
+  }
   for (const Method& method : kMethods) {
     if (method.stage == stage && method.number == number) return method.name;
   }
@@ -146,6 +190,9 @@ const char* method_name(uint32_t stage, uint32_t number) {
 
 uint32_t highest_method(uint32_t stage) {
   uint32_t highest = 0;
+  if (stage == KIWAMI_STAGE_OPTIMIZER) {
+    for (const Optimizer& optimizer : kOptimizers) highest = std::max(highest, optimizer.number);
+  }
   for (const Method& method : kMethods) {
     if (method.stage == stage) highest = std::max(highest, method.number);
   }
@@ -182,13 +229,24 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
   const SahCosts costs = costs_of(parameters, width);
   BinaryBvh bvh = run_builder(std::move(primitives), source, parameters, width, memory, parallel);
   for (const uint32_t method : parameters.optimizers()) {
-    run_optimizer(method, bvh, memory, parallel);
+    const Optimizer& optimizer = *find_optimizer(method);
+    if (optimizer.on_binary) optimizer.on_binary(bvh, {source, costs, memory, parallel});
   }
   // Builders that know nothing of blocks leave one primitive a leaf.
   if (!makes_leaves(parameters.whole(KIWAMI_PARAMETER_BUILDER))) {
     collapse_leaves(bvh, binary_leaf_size_of(parameters, width), costs, memory);
   }
   return bvh;
+}
+
+void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
+                        const SceneParameters& parameters, Memory& memory,
+                        const Parallel& parallel) {
+  const SahCosts costs = costs_of(parameters, tree.width);
+  for (const uint32_t method : parameters.optimizers()) {
+    const Optimizer& optimizer = *find_optimizer(method);
+    if (optimizer.on_wide) optimizer.on_wide(tree, {source, costs, memory, parallel});
+  }
 }
 
 }  // namespace kiwami

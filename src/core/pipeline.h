@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the numbers of methods to the calls: primitives to a binary tree, and what improves it.
+// From the numbers of methods to the calls: primitives to a binary tree, and what improves this and
+// the wide tree.
 #pragma once
 
 #include "bvh/binary_bvh.h"
@@ -22,10 +23,16 @@ uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width);
 /// How a wide tree of this width is made of a binary one.
 WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t width);
 
-/// Runs the builder and the optimisers that the parameters name. The primitives are those of the
+/// Runs the builder that the parameters name, and those of their optimisers that act on the binary
+/// tree. The primitives are those of the
 /// source that can be hit.
 BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource& source,
                            const SceneParameters& parameters, uint32_t width, Memory& memory,
                            const Parallel& parallel);
+
+/// Runs those of the optimisers that act on the wide tree.
+void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
+                        const SceneParameters& parameters, Memory& memory,
+                        const Parallel& parallel);
 
 }  // namespace kiwami
