@@ -59,14 +59,18 @@ enum {
   KIWAMI_BUILDER_AAC = 6,           /* the same within the cells of a Morton curve */
   KIWAMI_BUILDER_MINI_TREE = 7,     /* small trees by sweeping, and one over all of them */
   KIWAMI_BUILDER_OIBVH = 8,         /* the complete tree along a Morton curve */
-  KIWAMI_BUILDER_STR = 10           /* the tiles of a sort along each axis, as R-trees are packed */
+  KIWAMI_BUILDER_STR = 10,          /* the tiles of a sort along each axis, as R-trees are packed */
+  KIWAMI_BUILDER_TRBVH = 11         /* LBVH, its treelets restructured */
 };
 enum {
-  KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1, /* subtrees move to where the area shrinks most */
-  KIWAMI_OPTIMIZER_ROTATION = 2,             /* near relatives change places */
-  KIWAMI_OPTIMIZER_REORDER_SATO = 6,         /* for any-hit rays: large children first */
-  KIWAMI_OPTIMIZER_REORDER_NARY = 7          /* for any-hit rays: children first that stop most rays
-                                              * for their cost */
+  KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1,  /* subtrees move to where the area shrinks most */
+  KIWAMI_OPTIMIZER_ROTATION = 2,              /* near relatives change places */
+  KIWAMI_OPTIMIZER_TREELET = 3,               /* the tops of subtrees get the shape of least cost */
+  KIWAMI_OPTIMIZER_AGGLOMERATIVE_TREELET = 4, /* larger tops, joined from the nearest parts */
+  KIWAMI_OPTIMIZER_REINSERTION = 5,  /* wasteful nodes one by one, the best place for each */
+  KIWAMI_OPTIMIZER_REORDER_SATO = 6, /* for any-hit rays: large children first */
+  KIWAMI_OPTIMIZER_REORDER_NARY = 7  /* for any-hit rays: children first that stop most rays
+                                      * for their cost */
 };
 enum {
   KIWAMI_CONTRACTION_SURFACE_AREA = 0, /* the largest child is opened first */

@@ -120,7 +120,7 @@ void CommittedScene::build(const SceneParameters& parameters) {
   tree_ = build_wide_tree(std::move(binary), source(), wide_tree_config(parameters, tree_.width),
                           memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
-  optimize_wide_tree(tree_, source(), parameters, memory_, *parallel_);
+  optimize_wide_tree(tree_, source(), parameters, memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
 
   view_.tree = tree_.view;

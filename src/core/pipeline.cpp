@@ -16,10 +16,13 @@
 #include "bvh/representative_rays.h"
 #include "bvh/tree_edit.h"
 #include "core/error.h"
+#include "optimizers/agglomerative_treelet.h"
 #include "optimizers/nary_reorder.h"
 #include "optimizers/reinsertion.h"
 #include "optimizers/rotation.h"
 #include "optimizers/sato_reorder.h"
+#include "optimizers/sequential_reinsertion.h"
+#include "optimizers/treelet_restructuring.h"
 
 namespace kiwami {
 namespace {
@@ -40,12 +43,16 @@ constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_MINI_TREE, "mini_tree"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_OIBVH, "oibvh"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_STR, "str"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_TRBVH, "trbvh"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_OPTIMAL, "optimal"},
 };
 
 /// Rays that are sampled where the user gives none.
 constexpr size_t kRayCount = 16384;
+
+/// Of a node of two children, where a wide node costs 1: there are several in a wide one.
+constexpr float kBinaryNodeCost = 0.5f;
 
 SahCosts costs_of(const SceneParameters& parameters, uint32_t width) {
   return {static_cast<float>(parameters[KIWAMI_PARAMETER_NODE_COST]),
@@ -74,6 +81,15 @@ SpatialSplitBuilder::Config spatial_split_config(const SceneParameters& paramete
           parameters[KIWAMI_PARAMETER_SPLIT_BUDGET], parameters[KIWAMI_PARAMETER_SPLIT_ALPHA]};
 }
 
+TreeletConfig treelet_config(uint32_t leaf_count, const SahCosts& costs) {
+  TreeletConfig config;
+  config.leaf_count = leaf_count;
+  config.costs = costs;
+  config.costs.node_cost *= kBinaryNodeCost;
+  config.max_leaf_size = costs.block_size;
+  return config;
+}
+
 /// Whether a builder makes leaves of several primitives where that is cheaper.
 bool makes_leaves(uint32_t builder) {
   return builder == KIWAMI_BUILDER_BINNED_SAH || builder == KIWAMI_BUILDER_SWEEP_SAH ||
@@ -94,6 +110,11 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const TriangleSource& so
       return LbvhBuilder::build(std::move(primitives), {}, memory, parallel);
     case KIWAMI_BUILDER_PLOC:
       return PlocBuilder::build(std::move(primitives), {}, memory, parallel);
+    case KIWAMI_BUILDER_TRBVH: {
+      BinaryBvh bvh = LbvhBuilder::build(std::move(primitives), {}, memory, parallel);
+      optimize_by_treelets(bvh, treelet_config(7, costs_of(parameters, width)), memory, parallel);
+      return bvh;
+    }
     case KIWAMI_BUILDER_SWEEP_SAH:
       return SweepSahBuilder::build(std::move(primitives), sah_config(parameters, width), memory,
                                     parallel);
@@ -139,12 +160,34 @@ struct Optimizer {
 constexpr Optimizer kOptimizers[] = {
     {KIWAMI_OPTIMIZER_PARALLEL_REINSERTION, "parallel_reinsertion",
      [](BinaryBvh& bvh, const OptimizerInput& input) {
-       optimize_by_parallel_reinsertion(bvh, {}, input.memory, input.parallel);
+       ReinsertionConfig config;
+       config.costs = input.costs;
+       optimize_by_parallel_reinsertion(bvh, config, input.memory, input.parallel);
      },
      nullptr},
     {KIWAMI_OPTIMIZER_ROTATION, "rotation",
      [](BinaryBvh& bvh, const OptimizerInput& input) {
-       optimize_by_rotation(bvh, {}, input.memory);
+       RotationConfig config;
+       config.costs = input.costs;
+       optimize_by_rotation(bvh, config, input.memory);
+     },
+     nullptr},
+    {KIWAMI_OPTIMIZER_TREELET, "treelet",
+     [](BinaryBvh& bvh, const OptimizerInput& input) {
+       optimize_by_treelets(bvh, treelet_config(7, input.costs), input.memory, input.parallel);
+     },
+     nullptr},
+    {KIWAMI_OPTIMIZER_AGGLOMERATIVE_TREELET, "agglomerative_treelet",
+     [](BinaryBvh& bvh, const OptimizerInput& input) {
+       optimize_by_agglomerative_treelets(bvh, treelet_config(9, input.costs), input.memory,
+                                          input.parallel);
+     },
+     nullptr},
+    {KIWAMI_OPTIMIZER_REINSERTION, "reinsertion",
+     [](BinaryBvh& bvh, const OptimizerInput& input) {
+       SequentialReinsertionConfig config;
+       config.costs = input.costs;
+       optimize_by_reinsertion(bvh, config, input.memory);
      },
      nullptr},
     {KIWAMI_OPTIMIZER_REORDER_SATO, "reorder_sato", nullptr,

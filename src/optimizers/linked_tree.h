@@ -11,7 +11,7 @@ namespace kiwami {
 class LinkedTree {
  public:
   /// Numbers the tree depth first.
-  LinkedTree(BinaryBvh& bvh, Memory& memory) : bvh_(bvh), memory_(memory) {
+  LinkedTree(BinaryBvh& bvh, Memory& memory) : bvh_(bvh), memory_(memory), changes_(memory) {
     relabel_depth_first(bvh, memory);
     parents_ = Array<uint32_t>(memory, bvh.nodes.size());
     if (!bvh.nodes.empty()) parents_[0] = 0;
@@ -34,21 +34,48 @@ class LinkedTree {
   /// to the first and the node to the second slot of the pair. Returns what that adds to the area
   /// of the inner nodes.
   double move(uint32_t node, uint32_t target) {
-    const uint32_t above = parents_[node], pair = bvh_.nodes[above].first;
+    double added = 0.0;
     const BinaryNode moved = bvh_.nodes[node];
-    double added = -static_cast<double>(bvh_.nodes[above].bounds.half_area());
+    // The pair is free by now, and the target is at neither of its slots.
+    const uint32_t pair = take_out(node, added);
+    put_beside(moved, pair, target, added);
+    return added;
+  }
+
+  /// Takes out a node, which is not the root; its sibling moves to the parent's slot. Returns the
+  /// first slot of the pair that is free then. Adds what that adds to the area of the inner nodes.
+  uint32_t take_out(uint32_t node, double& added) {
+    const uint32_t above = parents_[node], pair = bvh_.nodes[above].first;
+    added -= bvh_.nodes[above].bounds.half_area();
     place(above, bvh_.nodes[sibling(node)]);
     added += refit_above(above);
-    // The sibling's slots are free by now, and the target is at neither of them.
+    return pair;
+  }
+
+  /// Puts a node that is not in the tree beside target: both into a free pair, the target first,
+  /// under a new node in the target's slot.
+  void put_beside(const BinaryNode& node, uint32_t pair, uint32_t target, double& added) {
     const BinaryNode beside = bvh_.nodes[target];
-    parents_[pair] = parents_[pair + 1] = target;
-    place(pair, beside);
-    place(pair + 1, moved);
     Bounds both = beside.bounds;
-    both.extend(moved.bounds);
-    bvh_.nodes[target] = {both, pair, 0};
+    both.extend(node.bounds);
+    place(pair, beside);
+    place(pair + 1, node);
+    place(target, {both, pair, 0});
     added += both.half_area();
-    return added + refit_above(target);
+    added += refit_above(target);
+  }
+
+  /// From here on, changes can be undone.
+  void begin_changes() {
+    is_recording_ = true;
+    while (!changes_.empty()) changes_.pop_back();
+  }
+
+  /// Brings back the tree of the last begin_changes.
+  void undo_changes() {
+    for (size_t i = changes_.size(); i-- > 0;) bvh_.nodes[changes_[i].slot] = changes_[i].before;
+    for (size_t i = 0; i < changes_.size(); ++i) adopt(changes_[i].slot);
+    begin_changes();
   }
 
   /// Ends the editing: depth first again, no deeper than trees may be.
@@ -59,7 +86,17 @@ class LinkedTree {
   }
 
  private:
+  struct Change {
+    uint32_t slot;
+    BinaryNode before;
+  };
+
+  void record(uint32_t slot) {
+    if (is_recording_) changes_.push_back({slot, bvh_.nodes[slot]});
+  }
+
   void place(uint32_t slot, const BinaryNode& node) {
+    record(slot);
     bvh_.nodes[slot] = node;
     adopt(slot);
   }
@@ -79,6 +116,7 @@ class LinkedTree {
       bounds.extend(bvh_.nodes[node.first + 1].bounds);
       if (node.bounds.contains(bounds) && bounds.contains(node.bounds)) break;
       added += static_cast<double>(bounds.half_area()) - node.bounds.half_area();
+      record(slot);
       node.bounds = bounds;
     }
     return added;
@@ -87,6 +125,8 @@ class LinkedTree {
   BinaryBvh& bvh_;
   Memory& memory_;
   Array<uint32_t> parents_;
+  GrowingArray<Change> changes_;
+  bool is_recording_ = false;
 };
 
 }  // namespace kiwami

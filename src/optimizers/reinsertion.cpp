@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "optimizers/linked_tree.h"
+#include "optimizers/whole_blocks.h"
 
 namespace kiwami {
 namespace {
@@ -103,9 +104,13 @@ class PlaceSearch {
 };
 
 /// The nodes of largest area but the root, by rising slot.
-Array<uint32_t> choose_candidates(const LinkedTree& tree, float share, Memory& memory) {
-  Array<uint32_t> slots(memory, tree.size() - 1);
-  for (uint32_t i = 0; i < slots.size(); ++i) slots[i] = i + 1;
+Array<uint32_t> choose_candidates(const LinkedTree& tree, const WholeBlocks& blocks, float share,
+                                  Memory& memory) {
+  GrowingArray<uint32_t> movable(memory);
+  for (uint32_t i = 1; i < tree.size(); ++i) {
+    if (!blocks.is_inside(i)) movable.push_back(i);
+  }
+  Array<uint32_t> slots = movable.take();
   const auto count = std::clamp<size_t>(
       static_cast<size_t>(static_cast<double>(slots.size()) * share), 1, slots.size());
   const auto is_larger = [&](uint32_t a, uint32_t b) {
@@ -168,12 +173,14 @@ void optimize_by_parallel_reinsertion(BinaryBvh& bvh, const ReinsertionConfig& c
   // With fewer than three leaves there is one tree only.
   if (bvh.primitive_ids.size() < 3 || bvh.nodes.size() < 5) return;
   LinkedTree tree(bvh, memory);
-  if (tree.size() >= 5) {
-    for (uint32_t round = 0; round < config.rounds; ++round) {
-      const Array<uint32_t> candidates = choose_candidates(tree, config.candidate_share, memory);
-      if (apply(tree, search(tree, candidates, memory, parallel), memory) == 0) break;
-    }
+  const WholeBlocks blocks(bvh, config.costs, memory);
+  // Where all but the root stands inside a block, there is nothing to move.
+  for (uint32_t round = 0; round < config.rounds && !bvh.nodes[0].is_leaf(); ++round) {
+    const Array<uint32_t> candidates =
+        choose_candidates(tree, blocks, config.candidate_share, memory);
+    if (apply(tree, search(tree, candidates, memory, parallel), memory) == 0) break;
   }
+  WholeBlocks::release(bvh);
   tree.finish();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bvh/binary_bvh.h"
+#include "bvh/sah_cost.h"
 #include "core/memory.h"
 #include "parallel/parallel.h"
 
@@ -12,6 +13,7 @@ struct ReinsertionConfig {
   uint32_t rounds = 8;
   /// The part of all nodes, those of largest area, that is tried in each round, 0 to 1.
   float candidate_share = 0.05f;
+  SahCosts costs = {};
 };
 
 /// Takes subtrees out and puts them back where the tree's surface area shrinks most: D. Meister,
@@ -20,7 +22,8 @@ struct ReinsertionConfig {
 /// Bounding Volume Hierarchies", CGF 32(1), 2013. All candidates of a round search the same tree in
 /// parallel, without being taken out. Departs from the first in what follows: the moves are applied
 /// one after the other, the best first, and each only if it still lowers the area of the tree as it
-/// is by then. So the cost never rises and the tree does not depend on the number of threads.
+/// is by then; and subtrees that fill a leaf block stay whole. So the cost never rises and the tree
+/// does not depend on the number of threads.
 void optimize_by_parallel_reinsertion(BinaryBvh& bvh, const ReinsertionConfig& config,
                                       Memory& memory, const Parallel& parallel);
 

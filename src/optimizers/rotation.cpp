@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bvh/tree_edit.h"
+#include "optimizers/whole_blocks.h"
 
 namespace kiwami {
 namespace {
@@ -78,11 +79,11 @@ class Rotator {
 /// Rotates at every node once, from below; returns how often that paid. Slots are swapped between
 /// levels, so the order from below is that of the numbers at the start: it decides only what is
 /// found in this pass.
-size_t rotate_all(BinaryBvh& bvh) {
+size_t rotate_all(BinaryBvh& bvh, const WholeBlocks& blocks) {
   Rotator rotator(bvh);
   size_t rotations = 0;
   for (size_t i = bvh.nodes.size(); i-- > 0;) {
-    if (bvh.nodes[i].is_leaf()) continue;
+    if (bvh.nodes[i].is_leaf() || blocks.is_inside(static_cast<uint32_t>(i))) continue;
     const Rotation best = rotator.find_best(static_cast<uint32_t>(i));
     if (!(best.gain > 0.0f)) continue;
     rotator.apply(static_cast<uint32_t>(i), best);
@@ -94,10 +95,14 @@ size_t rotate_all(BinaryBvh& bvh) {
 }  // namespace
 
 void optimize_by_rotation(BinaryBvh& bvh, const RotationConfig& config, Memory& memory) {
+  if (bvh.nodes.empty()) return;
   for (uint32_t round = 0; round < config.rounds; ++round) {
     // A pass needs children behind their parents, and rotations move some before.
     relabel_depth_first(bvh, memory);
-    if (rotate_all(bvh) == 0) break;
+    const WholeBlocks blocks(bvh, config.costs, memory);
+    const size_t rotations = rotate_all(bvh, blocks);
+    WholeBlocks::release(bvh);
+    if (rotations == 0) break;
   }
   relabel_depth_first(bvh, memory);
   limit_depth(bvh, memory);

@@ -46,7 +46,7 @@ TEST_F(Rotation, EndsWhereNoRotationPays) {
   for (int trial = 0; trial < 20; ++trial) {
     const Mesh mesh = soup(40, seed() + trial);
     BinaryBvh bvh = build(mesh);
-    kiwami::optimize_by_rotation(bvh, {1000}, memory_);
+    kiwami::optimize_by_rotation(bvh, {1000, {1.0f, 1.0f, 1}}, memory_);
     verify(bvh, mesh, 1);
     const double least = inner_area(bvh);
     const auto try_swap = [&](uint32_t a, uint32_t b) {
@@ -76,7 +76,7 @@ TEST_F(Rotation, LowersTheCostInEachRound) {
     double last = before;
     for (const uint32_t rounds : {1u, 2u, 4u}) {
       BinaryBvh bvh = build(mesh);
-      kiwami::optimize_by_rotation(bvh, {rounds}, memory_);
+      kiwami::optimize_by_rotation(bvh, {rounds, {1.0f, 1.0f, 1}}, memory_);
       verify(bvh, mesh, 1);
       EXPECT_LE(inner_area(bvh), last);
       last = inner_area(bvh);
