@@ -80,6 +80,17 @@ kiwami_result kiwami_scene_set_optimizers(kiwami_scene* scene, const uint32_t* m
   });
 }
 
+kiwami_result kiwami_scene_set_representative_rays(kiwami_scene* scene, const kiwami_ray* rays,
+                                                   size_t stride, size_t count) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    if (count != 0) check_array("rays", rays, stride, sizeof(kiwami_ray), count);
+    const DefaultFloatEnvironment environment;
+    object_of(scene)->set_representative_rays(
+        copy_representative_rays(rays, stride, count, object_of(scene)->device().memory()));
+  });
+}
+
 const char* kiwami_method_name(uint32_t stage, uint32_t method) {
   return method_name(stage, method);
 }

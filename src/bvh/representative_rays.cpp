@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
-
-#include "kiwami/base.h"
 
 namespace kiwami {
 namespace {
@@ -88,6 +87,20 @@ void for_each_patch(const TriangleSource& source, Visit&& visit) {
   }
 }
 
+/// False for a ray that can only miss, by the rules of kiwami/trace.h.
+bool can_hit(const kiwami_ray& ray) {
+  bool is_zero = true;
+  for (const float component : {ray.direction_x, ray.direction_y, ray.direction_z}) {
+    if (!std::isfinite(component)) return false;
+    is_zero = is_zero && component == 0.0f;
+  }
+  for (const float component : {ray.origin_x, ray.origin_y, ray.origin_z}) {
+    // Written so that NaN is out of range.
+    if (!(std::fabs(component) <= KIWAMI_MAX_COORDINATE)) return false;
+  }
+  return !is_zero && ray.tmin <= ray.tmax && ray.mask != 0;
+}
+
 /// Makes rays that start on surfaces, of one kind after the other.
 class RaySampler {
  public:
@@ -136,6 +149,24 @@ class RaySampler {
 };
 
 }  // namespace
+
+Array<RepresentativeRay> copy_representative_rays(const kiwami_ray* rays, size_t stride,
+                                                  size_t count, Memory& memory) {
+  const size_t step = stride != 0 ? stride : sizeof(kiwami_ray);
+  Array<RepresentativeRay> copied(memory, count);
+  size_t made = 0;
+  for (size_t i = 0; i < count; ++i) {
+    kiwami_ray ray;
+    std::memcpy(&ray, reinterpret_cast<const unsigned char*>(rays) + i * step, sizeof ray);
+    if (!can_hit(ray)) continue;
+    copied[made++] = {{ray.origin_x, ray.origin_y, ray.origin_z},
+                      ray.tmin,
+                      {ray.direction_x, ray.direction_y, ray.direction_z},
+                      ray.tmax};
+  }
+  copied.shrink(made);
+  return copied;
+}
 
 Array<RepresentativeRay> sample_rays(const TriangleSource& source, size_t count, Memory& memory) {
   Array<RepresentativeRay> rays(memory, count);

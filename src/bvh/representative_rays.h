@@ -6,6 +6,7 @@
 
 #include "bvh/triangle_source.h"
 #include "core/memory.h"
+#include "kiwami/trace.h"
 
 namespace kiwami {
 
@@ -15,6 +16,10 @@ struct RepresentativeRay {
   Vec3f direction;
   float tmax;
 };
+
+/// Copies those of count rays, stride bytes apart (0: without gaps), that can hit anything.
+Array<RepresentativeRay> copy_representative_rays(const kiwami_ray* rays, size_t stride,
+                                                  size_t count, Memory& memory);
 
 /// A guess at the rays of a picture, from points spread evenly over the surfaces: a third of them
 /// distributed by the cosine on either side, a third as well but no longer than a quarter of the

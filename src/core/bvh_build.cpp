@@ -123,8 +123,11 @@ void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
     tree_ = flatten(binary, memory);
     return;
   }
-  const WideTreeConfig config = wide_tree_config(parameters, width);
-  tree_ = flatten(contract_by(binary, config, memory, parallel), binary, memory);
+  // Boxes hold nothing that a ray could hit: there, the areas alone guide what goes by rays.
+  const Array<RepresentativeRay> rays = sample_rays_for(parameters, source(), memory);
+  WideTreeConfig config = wide_tree_config(parameters, width);
+  config.rays = {rays.data(), rays.size()};
+  tree_ = flatten(contract_by(binary, source(), config, memory, parallel), binary, memory);
 }
 
 /// Those that no leaf owns are empty.

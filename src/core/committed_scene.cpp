@@ -54,14 +54,15 @@ size_t CommittedScene::MeshReferences::copied_bytes() const {
 }
 
 CommittedScene::CommittedScene(Device& device, const AttachedMesh* meshes, size_t count,
-                               const SceneParameters& parameters)
+                               const SceneParameters& parameters,
+                               std::span<const RepresentativeRay> rays)
     : device_(device), memory_(device.memory().allocator()), references_(memory_, meshes, count) {
   const auto start = std::chrono::steady_clock::now();
   number_triangles(meshes, count);
   const uint32_t width = width_of(parameters, device);
   kernels_ = kernels_of(device.isa(), width);
   tree_.width = width;
-  build(parameters);
+  build(parameters, rays);
   describe();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   info_.build_seconds = seconds.count();
@@ -114,13 +115,20 @@ BinaryBvh CommittedScene::build_binary(const SceneParameters& parameters) {
   return binary;
 }
 
-void CommittedScene::build(const SceneParameters& parameters) {
+void CommittedScene::build(const SceneParameters& parameters,
+                           std::span<const RepresentativeRay> rays) {
+  Array<RepresentativeRay> sampled;
+  if (rays.empty()) {
+    sampled = sample_rays_for(parameters, source(), memory_);
+    rays = {sampled.data(), sampled.size()};
+  }
   BinaryBvh binary = build_binary(parameters);
   const Bounds bounds = binary.nodes.empty() ? Bounds::empty() : binary.nodes[0].bounds;
-  tree_ = build_wide_tree(std::move(binary), source(), wide_tree_config(parameters, tree_.width),
-                          memory_, parallel());
+  WideTreeConfig config = wide_tree_config(parameters, tree_.width);
+  config.rays = rays;
+  tree_ = build_wide_tree(std::move(binary), source(), config, memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
-  optimize_wide_tree(tree_, source(), parameters, memory_, parallel());
+  optimize_wide_tree(tree_, rays, parameters, memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
 
   view_.tree = tree_.view;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
+#include "bvh/representative_rays.h"
 #include "bvh/triangle_source.h"
 #include "core/device.h"
 #include "core/geometry.h"
@@ -22,9 +25,10 @@ struct AttachedMesh {
 /// geometries that it was built from, so that it outlives their detachment. Never changes.
 class CommittedScene : public Object<CommittedScene> {
  public:
-  /// Builds over count meshes by rising geometry_id. Throws Error.
+  /// Builds over count meshes by rising geometry_id. Where a method goes by rays, it goes by these,
+  /// or by sampled ones where there are none. Throws Error.
   CommittedScene(Device& device, const AttachedMesh* meshes, size_t count,
-                 const SceneParameters& parameters);
+                 const SceneParameters& parameters, std::span<const RepresentativeRay> rays);
   static void destroy(CommittedScene* scene) noexcept;
 
   /// For what only works on it, and is gone before it.
@@ -62,7 +66,7 @@ class CommittedScene : public Object<CommittedScene> {
 
   void number_triangles(const AttachedMesh* meshes, size_t count);
   BinaryBvh build_binary(const SceneParameters& parameters);
-  void build(const SceneParameters& parameters);
+  void build(const SceneParameters& parameters, std::span<const RepresentativeRay> rays);
   void describe();
 
   Reference<Device> device_;

@@ -46,10 +46,11 @@ constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_TRBVH, "trbvh"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_OPTIMAL, "optimal"},
+    {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_RAY_DISTRIBUTION, "ray_distribution"},
 };
 
 /// Rays that are sampled where the user gives none.
-constexpr size_t kRayCount = 16384;
+constexpr size_t kSampledRayCount = 16384;
 
 /// Of a node of two children, where a wide node costs 1: there are several in a wide one.
 constexpr float kBinaryNodeCost = 0.5f;
@@ -143,7 +144,7 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const TriangleSource& so
 
 /// What an optimiser may know beside its tree.
 struct OptimizerInput {
-  const TriangleSource& source;
+  std::span<const RepresentativeRay> rays;
   SahCosts costs;
   Memory& memory;
   const Parallel& parallel;
@@ -196,9 +197,8 @@ constexpr Optimizer kOptimizers[] = {
      }},
     {KIWAMI_OPTIMIZER_REORDER_NARY, "reorder_nary", nullptr,
      [](WideTree& tree, const OptimizerInput& input) {
-       const Array<RepresentativeRay> rays = sample_rays(input.source, kRayCount, input.memory);
        const NaryReorderConfig config = {input.costs.node_cost, input.costs.leaf_cost};
-       reorder_by_rays(tree, rays, config, input.memory, input.parallel);
+       reorder_by_rays(tree, input.rays, config, input.memory, input.parallel);
      }},
 };
 
@@ -245,11 +245,11 @@ uint32_t highest_method(uint32_t stage) {
 uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width) {
   const uint32_t asked = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
   const uint32_t leaf_size = asked != 0 ? std::min(asked, width) : width;
-  if (parameters.whole(KIWAMI_PARAMETER_CONTRACTION) != KIWAMI_CONTRACTION_OPTIMAL) {
+  if (parameters.whole(KIWAMI_PARAMETER_CONTRACTION) == KIWAMI_CONTRACTION_SURFACE_AREA) {
     return leaf_size;
   }
-  // The optimal contraction collapses small subtrees to leaves itself. Leaves of half the size, or
-  // of four triangles, leave it nearly all of the choice (within 2.3 % of the cost from single
+  // The other contractions collapse small subtrees to leaves themselves. Leaves of half the size,
+  // or of four triangles, leave it nearly all of the choice (within 2.3 % of the cost from single
   // triangles on real scenes) and a tree that is a third as large.
   return std::min(leaf_size, std::max(4u, leaf_size / 2));
 }
@@ -273,7 +273,7 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
   BinaryBvh bvh = run_builder(std::move(primitives), source, parameters, width, memory, parallel);
   for (const uint32_t method : parameters.optimizers()) {
     const Optimizer& optimizer = *find_optimizer(method);
-    if (optimizer.on_binary) optimizer.on_binary(bvh, {source, costs, memory, parallel});
+    if (optimizer.on_binary) optimizer.on_binary(bvh, {{}, costs, memory, parallel});
   }
   // Builders that know nothing of blocks leave one primitive a leaf.
   if (!makes_leaves(parameters.whole(KIWAMI_PARAMETER_BUILDER))) {
@@ -282,13 +282,22 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
   return bvh;
 }
 
-void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
+Array<RepresentativeRay> sample_rays_for(const SceneParameters& parameters,
+                                         const TriangleSource& source, Memory& memory) {
+  const std::span<const uint32_t> methods = parameters.optimizers();
+  const bool goes_by_rays =
+      parameters.whole(KIWAMI_PARAMETER_CONTRACTION) == KIWAMI_CONTRACTION_RAY_DISTRIBUTION ||
+      std::count(methods.begin(), methods.end(), KIWAMI_OPTIMIZER_REORDER_NARY) != 0;
+  return goes_by_rays ? sample_rays(source, kSampledRayCount, memory) : Array<RepresentativeRay>();
+}
+
+void optimize_wide_tree(WideTree& tree, std::span<const RepresentativeRay> rays,
                         const SceneParameters& parameters, Memory& memory,
                         const Parallel& parallel) {
   const SahCosts costs = costs_of(parameters, tree.width);
   for (const uint32_t method : parameters.optimizers()) {
     const Optimizer& optimizer = *find_optimizer(method);
-    if (optimizer.on_wide) optimizer.on_wide(tree, {source, costs, memory, parallel});
+    if (optimizer.on_wide) optimizer.on_wide(tree, {rays, costs, memory, parallel});
   }
 }
 

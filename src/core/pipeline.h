@@ -24,14 +24,18 @@ uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width);
 WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t width);
 
 /// Runs the builder that the parameters name, and those of their optimisers that act on the binary
-/// tree. The primitives are those of the
-/// source that can be hit.
+/// tree. The primitives are those of the source that can be hit.
 BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource& source,
                            const SceneParameters& parameters, uint32_t width, Memory& memory,
                            const Parallel& parallel);
 
+/// Rays for the methods that go by rays, where there are none of the user's: none where no method
+/// that the parameters name does.
+Array<RepresentativeRay> sample_rays_for(const SceneParameters& parameters,
+                                         const TriangleSource& source, Memory& memory);
+
 /// Runs those of the optimisers that act on the wide tree.
-void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
+void optimize_wide_tree(WideTree& tree, std::span<const RepresentativeRay> rays,
                         const SceneParameters& parameters, Memory& memory,
                         const Parallel& parallel);
 

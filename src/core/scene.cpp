@@ -69,7 +69,8 @@ void Scene::commit() {
   Memory& memory = device_->memory();
   const Array<AttachedMesh> attached = attached_meshes();
   committed_ = Reference<CommittedScene>::adopt(
-      make_object<CommittedScene>(memory, *device_, attached.data(), attached.size(), parameters_));
+      make_object<CommittedScene>(memory, *device_, attached.data(), attached.size(), parameters_,
+                                  std::span<const RepresentativeRay>(rays_.data(), rays_.size())));
   log_skipped(*device_, committed_->info());
 }
 

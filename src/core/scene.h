@@ -21,6 +21,9 @@ class Scene : public Object<Scene> {
   Device& device() const { return *device_; }
   SceneParameters& parameters() { return parameters_; }
 
+  /// For what goes by rays in the next commits; empty: rays are sampled.
+  void set_representative_rays(Array<RepresentativeRay> rays) { rays_ = std::move(rays); }
+
   /// Returns the lowest free number. Throws Error(OUT_OF_MEMORY).
   uint32_t attach(TriangleMesh& mesh);
   /// Throws Error(INVALID_ARGUMENT) for a number that no geometry has.
@@ -36,6 +39,7 @@ class Scene : public Object<Scene> {
 
   Reference<Device> device_;
   SceneParameters parameters_;
+  Array<RepresentativeRay> rays_;
   GrowingArray<TriangleMesh*> meshes_;  ///< by geometry id; nullptr: free
   uint32_t lowest_free_ = 0;            ///< every lower id is taken
   Reference<CommittedScene> committed_;

@@ -43,9 +43,10 @@ class OptimalChooser {
         fill_from_(config.fill_nodes ? config.width / 2 + 2 : config.width),
         node_cost_(config.node_cost),
         leaf_cost_(config.leaf_cost),
+        visit_weights_(config.visit_weights),
         decisions_(memory, binary.nodes.size()) {
-    const double root_area = binary.nodes[0].bounds.half_area();
-    least_area_ = root_area > 0.0 ? root_area * 0x1p-64 : 1.0;
+    const double root_weight = measured_weight_of(0);
+    least_weight_ = root_weight > 0.0 ? root_weight * 0x1p-64 : 1.0;
   }
 
   void decide(Memory& memory, const Parallel& parallel) {
@@ -97,16 +98,21 @@ class OptimalChooser {
     return next;
   }
 
-  /// The area, with so little added that it decides only among nodes without any: there, fewer
-  /// nodes and leaves are better.
-  double area_of(const BinaryNode& node) const { return node.bounds.half_area() + least_area_; }
+  /// What a node's cost is in proportion to: its area, or the visits that were measured.
+  float measured_weight_of(uint32_t index) const {
+    return visit_weights_.empty() ? binary_.nodes[index].bounds.half_area() : visit_weights_[index];
+  }
+
+  /// With so little added that it decides only among nodes without any weight: there, fewer nodes
+  /// and leaves are better.
+  double weight_of(uint32_t index) const { return measured_weight_of(index) + least_weight_; }
 
   void solve(uint32_t index, CostRow& row) {
     const BinaryNode& node = binary_.nodes[index];
     if (node.is_leaf()) {
       row.size = 1;
       row.primitive_count = node.count;
-      row.cost[0] = leaf_cost_ * area_of(node);
+      row.cost[0] = leaf_cost_ * weight_of(index);
       decisions_[index] = Decisions();
       decisions_[index].add(1, 1);
       return;
@@ -118,16 +124,16 @@ class OptimalChooser {
   }
 
   void combine(uint32_t index, const CostRow& left, const CostRow& right, CostRow& row) {
-    const double area = area_of(binary_.nodes[index]);
+    const double weight = weight_of(index);
     const uint32_t size = std::min(left.size + right.size, width_);
     double least[kMaxContractionWidth + 1];
     uint32_t from_left[kMaxContractionWidth + 1];
     for (uint32_t i = 2; i <= size; ++i) least[i] = share(left, right, i, from_left[i]);
 
     row.primitive_count = std::min(left.primitive_count + right.primitive_count, leaf_width_ + 1);
-    const double as_node = least[size] + node_cost_ * area;
+    const double as_node = least[size] + node_cost_ * weight;
     const double as_leaf = row.primitive_count <= leaf_width_
-                               ? leaf_cost_ * area
+                               ? leaf_cost_ * weight
                                : std::numeric_limits<double>::infinity();
     Decisions decisions;
     decisions.add(1, as_leaf <= as_node);
@@ -176,14 +182,14 @@ class OptimalChooser {
     return 1;
   }
 
-  /// Divides leaves, those first whose halves add least area, until the node is full or no leaf can
-  /// be divided; returns the number of children.
+  /// Divides leaves, those first whose halves add least weight, until the node is full or no leaf
+  /// can be divided; returns the number of children.
   uint32_t fill(ChosenSlot* chosen, uint32_t count) const {
     for (; count < width_; ++count) {
       uint32_t best = count;
       float least = std::numeric_limits<float>::infinity();
       for (uint32_t i = 0; i < count; ++i) {
-        const float added = chosen[i].is_leaf ? added_area(chosen[i].binary_node) : least;
+        const float added = chosen[i].is_leaf ? added_weight(chosen[i].binary_node) : least;
         if (added < least) {
           least = added;
           best = i;
@@ -198,13 +204,13 @@ class OptimalChooser {
     return count;
   }
 
-  /// What two leaves in place of one add to the area of leaves; infinite where it cannot be
+  /// What two leaves in place of one add to the weight of leaves; infinite where it cannot be
   /// divided.
-  float added_area(uint32_t index) const {
+  float added_weight(uint32_t index) const {
     const BinaryNode& node = binary_.nodes[index];
     if (node.is_leaf()) return std::numeric_limits<float>::infinity();
-    return binary_.nodes[node.first].bounds.half_area() +
-           binary_.nodes[node.first + 1].bounds.half_area() - node.bounds.half_area();
+    return measured_weight_of(node.first) + measured_weight_of(node.first + 1) -
+           measured_weight_of(index);
   }
 
   const BinaryBvh& binary_;
@@ -213,7 +219,8 @@ class OptimalChooser {
   uint32_t fill_from_;  ///< nodes of at least so many children are filled
   double node_cost_;
   double leaf_cost_;
-  double least_area_;
+  std::span<const float> visit_weights_;
+  double least_weight_;
   Array<Decisions> decisions_;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "wide/contraction.h"
 
 namespace kiwami {
@@ -13,15 +15,18 @@ struct OptimalContractionConfig {
   /// Divide leaves to fill the nodes that have fewer than half of their slots, less one, free:
   /// leaf-node merging finds too few partners that are small enough to take those.
   bool fill_nodes = false;
+  /// How likely a ray visits each binary node, by its number; empty: as likely as its area says.
+  std::span<const float> visit_weights = {};
 };
 
-/// Contracts a binary tree to the wide tree of least cost by the surface area heuristic that it
-/// holds, by dynamic programming: A. Pinto, "Adaptive Collapsing on Bounding Volume Hierarchies for
-/// Ray-Tracing", EG short papers 2010; H. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray
-/// Traversal on GPUs Through Compressed Wide BVHs", HPG 2017. Subtrees of few primitives become
-/// leaves where that is cheaper. Where costs are equal, there are fewer nodes and leaves. Nodes
-/// that are filled come after that: the cost is then the least but for what divided leaves add.
-/// Takes 8 bytes a binary node while it runs. The tree is not empty.
+/// Contracts a binary tree to the wide tree of least cost that it holds, by the surface area
+/// heuristic or by visits that were measured, by dynamic programming: A. Pinto, "Adaptive
+/// Collapsing on Bounding Volume Hierarchies for Ray-Tracing", EG short papers 2010; H. Ylitie, T.
+/// Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG
+/// 2017. Subtrees of few primitives become leaves where that is cheaper. Where costs are equal,
+/// there are fewer nodes and leaves. Nodes that are filled come after that: the cost is then the
+/// least but for what divided leaves add. Takes 8 bytes a binary node while it runs. The tree is
+/// not empty.
 Contraction contract_optimally(const BinaryBvh& binary, const OptimalContractionConfig& config,
                                Memory& memory, const Parallel& parallel);
 

@@ -2,7 +2,10 @@
 // The owner of an N-wide tree, made from a binary one: contraction, leaf-node merging, packing.
 #pragma once
 
+#include <span>
+
 #include "bvh/binary_bvh.h"
+#include "bvh/representative_rays.h"
 #include "bvh/triangle_source.h"
 #include "core/memory.h"
 #include "parallel/parallel.h"
@@ -51,7 +54,7 @@ struct WideTree {
 };
 
 /// How the children of a wide node are chosen; the numbers of KIWAMI_PARAMETER_CONTRACTION.
-enum class ContractionMethod : uint32_t { kSurfaceArea = 0, kOptimal = 1 };
+enum class ContractionMethod : uint32_t { kSurfaceArea = 0, kOptimal = 1, kRayDistribution = 2 };
 
 struct WideTreeConfig {
   uint32_t width = 8;
@@ -61,11 +64,12 @@ struct WideTreeConfig {
   uint32_t merge_ring = 8;
   float node_cost = 1.0f;
   float leaf_cost = 1.0f;
+  std::span<const RepresentativeRay> rays = {};  ///< for kRayDistribution
 };
 
-/// The contraction that the config names.
-Contraction contract_by(const BinaryBvh& binary, const WideTreeConfig& config, Memory& memory,
-                        const Parallel& parallel);
+/// The contraction that the config names. The source is that of the rays' hits.
+Contraction contract_by(const BinaryBvh& binary, const TriangleSource& source,
+                        const WideTreeConfig& config, Memory& memory, const Parallel& parallel);
 
 /// Contracts a binary tree whose leaves own at most config.width triangles. Takes the tree, to free
 /// it before the wide one is written.

@@ -2,6 +2,8 @@
 // Every method of every stage of a build, by its number: names, errors, and equal answers.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -106,6 +108,47 @@ TEST_F(Pipeline, SpatialSplitsKeepWithinTheirBudget) {
   EXPECT_LE(many, 800u);
 }
 
+TEST_F(Pipeline, RepresentativeRaysChangeTheTreeAndNotTheAnswers) {
+  const Triangles triangles = random_triangles(3000, 5);
+  const Geometry mesh = make_mesh(device_, triangles.desc());
+  const std::vector<kiwami_ray> asked = random_rays(500, 11);
+  const uint32_t order = KIWAMI_OPTIMIZER_REORDER_NARY;
+  std::vector<kiwami_hit> expected;
+  std::vector<uint64_t> visits;
+  // None, which is sampled ones; some; the same among rays that can hit nothing, further apart.
+  for (const size_t stride : {size_t{0}, sizeof(kiwami_ray), 2 * sizeof(kiwami_ray)}) {
+    const Scene scene = make_scene(device_);
+    EXPECT_EQ(kiwami_scene_attach(scene.get(), mesh.get(), nullptr), KIWAMI_OK);
+    set(scene, KIWAMI_PARAMETER_VALIDATE_BUILD, 1);
+    set(scene, KIWAMI_PARAMETER_CONTRACTION, KIWAMI_CONTRACTION_RAY_DISTRIBUTION);
+    EXPECT_EQ(kiwami_scene_set_optimizers(scene.get(), &order, 1), KIWAMI_OK);
+    if (stride != 0) {
+      std::vector<kiwami_ray> rays;
+      kiwami_ray bad = asked[0];
+      bad.direction_x = std::numeric_limits<float>::quiet_NaN();
+      for (const kiwami_ray& ray : asked) rays.insert(rays.end(), {ray, bad});
+      if (stride == sizeof(kiwami_ray)) rays = asked;
+      EXPECT_EQ(
+          kiwami_scene_set_representative_rays(scene.get(), rays.data(), stride, asked.size()),
+          KIWAMI_OK);
+      // Copied: what happens to them afterwards does not matter.
+      std::fill(rays.begin(), rays.end(), kiwami_ray{});
+    }
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error(device_.get());
+    const std::vector<kiwami_hit> hits = closest_hits(scene, asked);
+    if (expected.empty()) expected = hits;
+    EXPECT_TRUE(are_equal(hits, expected));
+    kiwami_visits counted{};
+    counted.struct_size = sizeof counted;
+    EXPECT_EQ(kiwami_scene_count_visits(scene.get(), asked.data(), 0, asked.size(),
+                                        KIWAMI_COUNT_CLOSEST_HIT, &counted, nullptr, 0),
+              KIWAMI_OK);
+    visits.push_back(counted.node_visits + counted.leaf_visits);
+  }
+  EXPECT_LT(visits[1], visits[0]);
+  EXPECT_EQ(visits[2], visits[1]);
+}
+
 TEST_F(Pipeline, ErrorsNameWhatIsWrong) {
   const Scene scene = make_scene(device_);
   const uint32_t methods[KIWAMI_MAX_OPTIMIZERS + 1] = {200};
@@ -120,6 +163,15 @@ TEST_F(Pipeline, ErrorsNameWhatIsWrong) {
   expect(kiwami_scene_set_optimizers(scene.get(), methods, KIWAMI_MAX_OPTIMIZERS + 1),
          "count is 9, expected at most 8 optimizers");
   EXPECT_EQ(kiwami_scene_set_optimizers(scene.get(), nullptr, 0), KIWAMI_OK);
+  const kiwami_ray ray{};
+  expect(kiwami_scene_set_representative_rays(scene.get(), nullptr, 0, 1),
+         "rays is NULL, expected a valid pointer");
+  expect(kiwami_scene_set_representative_rays(scene.get(), &ray, 4, 1),
+         "the stride of rays is 4, expected at least 48, or 0 for 48");
+  EXPECT_EQ(kiwami_scene_set_representative_rays(scene.get(), &ray, 0, 1), KIWAMI_OK);
+  EXPECT_EQ(kiwami_scene_set_representative_rays(scene.get(), nullptr, 0, 0), KIWAMI_OK);
+  EXPECT_EQ(kiwami_scene_set_representative_rays(nullptr, nullptr, 0, 0),
+            KIWAMI_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(kiwami_scene_set_optimizers(nullptr, nullptr, 0), KIWAMI_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(last_error(), "scene is NULL, expected a valid pointer");
 }
