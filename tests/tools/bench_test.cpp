@@ -170,9 +170,11 @@ TEST(Bench, MakesATableOfPipelines) {
   for (const Json& row : rows) {
     const std::string scene = row.at("scene");
     EXPECT_TRUE(pipelines[scene].insert(row.at("pipeline")).second) << row;
-    expect_positive(row, {"triangles", "width", "build_ms_1", "mtris_per_second_1",
-                          "bytes_per_triangle", "peak_bytes_per_triangle", "sah",
-                          "bounce_shuffled_mrays", "bounce_shuffled_ratio", "ao_mrays"});
+    expect_positive(
+        row, {"triangles", "width", "build_ms_1", "mtris_per_second_1", "bytes_per_triangle",
+              "peak_bytes_per_triangle", "sah", "epo", "bounce_shuffled_mrays",
+              "bounce_shuffled_ratio", "bounce_shuffled_node_visits", "bounce_shuffled_leaf_visits",
+              "ao_mrays", "ao_node_visits"});
     EXPECT_FALSE(row.contains("wrong")) << row;
     for (const std::string rays : {"bounce_shuffled", "ao"}) {
       hashes[scene + rays].insert(row.at(rays + "_hits_hash"));

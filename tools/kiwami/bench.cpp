@@ -68,13 +68,6 @@ uint64_t count_disagreements(const OwnRun& own, const PeerRun& peer, size_t coun
   return disagreements;
 }
 
-RayVisits visits_of(const BuiltScene& scene, const BenchRays& rays) {
-  const kiwami_visits visits = scene.visits(rays.set.rays, rays.any_hit);
-  const auto count = static_cast<double>(std::max<uint64_t>(visits.ray_count, 1));
-  return {static_cast<double>(visits.node_visits) / count,
-          static_cast<double>(visits.leaf_visits) / count, visits.leaf_count_variability};
-}
-
 /// Everything about one scene.
 class SceneBench {
  public:

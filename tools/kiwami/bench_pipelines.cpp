@@ -88,6 +88,7 @@ std::unique_ptr<BuiltScene> PipelineBench::measure_builds(const BuildOptions& pi
   row.bytes_per_triangle = per_triangle(info.total_bytes, info.triangle_count);
   row.peak_bytes_per_triangle = per_triangle(info.peak_build_bytes, info.triangle_count);
   row.sah = info.sah_cost;
+  row.epo = scene->measures().epo;
   return scene;
 }
 
@@ -115,7 +116,7 @@ void PipelineBench::measure_trace(const BuiltScene& scene, size_t set, PipelineR
   }
   const double millions = static_cast<double>(rays.set.rays.size()) * 1e-6;
   row.traces.push_back({rays.set.name, rays.any_hit, millions / median(seconds.front()),
-                        median(ratios), *hashes_[set]});
+                        median(ratios), visits_of(scene, rays), *hashes_[set]});
 }
 
 std::string in_threads(uint32_t threads) {
@@ -133,9 +134,9 @@ void print_head(const PipelineRow& row) {
   for (const PipelineBuild& build : row.builds) {
     std::printf(" %20s", ("ms (Mtris/s), " + in_threads(build.threads)).c_str());
   }
-  std::printf(" %7s %7s %8s", "bytes", "peak", "SAH");
+  std::printf(" %7s %7s %8s %6s", "bytes", "peak", "SAH", "EPO");
   for (const PipelineTrace& trace : row.traces) {
-    std::printf(" %24s", ("Mrays/s (x) " + trace.rays).c_str());
+    std::printf(" %36s", ("nodes leaves Mrays/s (x) " + trace.rays).c_str());
   }
   std::printf("\n");
 }
@@ -185,9 +186,12 @@ nlohmann::ordered_json to_json(const PipelineRow& row) {
   json["bytes_per_triangle"] = row.bytes_per_triangle;
   json["peak_bytes_per_triangle"] = row.peak_bytes_per_triangle;
   json["sah"] = row.sah;
+  json["epo"] = row.epo;
   for (const PipelineTrace& trace : row.traces) {
     json[trace.rays + "_mrays"] = trace.mrays;
     json[trace.rays + "_ratio"] = trace.ratio;
+    json[trace.rays + "_node_visits"] = trace.visits.nodes;
+    json[trace.rays + "_leaf_visits"] = trace.visits.leaves;
     json[trace.rays + "_hits_hash"] =
         format("%016llx", static_cast<unsigned long long>(trace.hits_hash));
   }
@@ -205,7 +209,8 @@ void print_row(const PipelineRow& row, bool is_first) {
     std::printf(" %7.1f %7.1f %8.2f", row.bytes_per_triangle, row.peak_bytes_per_triangle, row.sah);
   }
   for (const PipelineTrace& trace : row.traces) {
-    std::printf(" %17.3f (%4.2f)", trace.mrays, trace.ratio);
+    std::printf(" %13.1f %5.1f %8.3f (%4.2f)", trace.visits.nodes, trace.visits.leaves, trace.mrays,
+                trace.ratio);
   }
   std::printf("\n");
   if (!row.wrong.empty()) std::printf("  WRONG: %s\n", row.wrong.c_str());

@@ -23,6 +23,7 @@ struct PipelineTrace {
   bool any_hit;
   double mrays;
   double ratio;  ///< to the first pipeline, on the same rays in the same rounds: above 1, faster
+  RayVisits visits;
   uint64_t hits_hash;
 };
 
@@ -42,6 +43,7 @@ struct PipelineRow {
   double bytes_per_triangle;
   double peak_bytes_per_triangle;
   double sah;
+  double epo;  ///< end-point overlap
   std::vector<PipelineTrace> traces;
   std::string wrong;  ///< what is wrong with the build or the answers, or ""
 };

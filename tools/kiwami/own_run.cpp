@@ -28,6 +28,13 @@ void check_threads(const Device& device, uint32_t threads) {
                    std::to_string(device.info().thread_count));
 }
 
+RayVisits visits_of(const BuiltScene& scene, const BenchRays& rays) {
+  const kiwami_visits visits = scene.visits(rays.set.rays, rays.any_hit);
+  const auto count = static_cast<double>(std::max<uint64_t>(visits.ray_count, 1));
+  return {static_cast<double>(visits.node_visits) / count,
+          static_cast<double>(visits.leaf_visits) / count, visits.leaf_count_variability};
+}
+
 OwnRun::OwnRun(const BuiltScene& scene, const BenchRays& rays, BenchApi api, uint32_t threads)
     : scene_(scene),
       rays_(rays),

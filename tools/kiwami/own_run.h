@@ -18,6 +18,8 @@ double per_triangle(uint64_t bytes, uint64_t triangles);
 /// Throws UsageError when the device has not got as many threads as were asked for.
 void check_threads(const Device& device, uint32_t threads);
 
+RayVisits visits_of(const BuiltScene& scene, const BenchRays& rays);
+
 /// Our side of a contest: rays and what a scene answered to them.
 class OwnRun {
  public:
