@@ -17,11 +17,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-struct NamedStructure {
-  const char* name;
-  std::unique_ptr<Structure> (*build)(std::span<const Corners> triangles);
-};
-
 class Baseline : public testing::TestWithParam<NamedStructure> {};
 
 float distance_of(const BaselineHit& hit) {
@@ -158,8 +153,7 @@ TEST_P(Baseline, CountsWhatItDoes) {
   EXPECT_LE(any.triangle_tests, closest.triangle_tests);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Baseline,
-                         testing::Values(NamedStructure{"BinaryBvh", build_binary_bvh}),
+INSTANTIATE_TEST_SUITE_P(All, Baseline, testing::ValuesIn(kStructures),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(TriangleList, LeavesOutWhatTheLibraryLeavesOut) {

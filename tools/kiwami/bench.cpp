@@ -2,7 +2,6 @@
 #include "kiwami/bench.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
@@ -20,8 +19,6 @@ namespace {
 
 // An entrance of a peer that is so much slower than its best one in the warming-up is left out.
 constexpr double kHopeless = 1.6;
-// Peers are not watertight, and of triangles at the same place either may be met.
-constexpr double kMostDisagreements = 0.01;
 
 /// One entrance of a peer that takes part in a contest.
 struct PeerSide {
@@ -53,19 +50,6 @@ std::vector<PeerSide> choose_peer_sides(const PeerScene& peer, const BenchRays& 
     if (seconds[i][0] <= kHopeless * best) hopeful.push_back(std::move(sides[i]));
   }
   return hopeful;
-}
-
-uint64_t count_disagreements(const OwnRun& own, const PeerRun& peer, size_t count,
-                             float least_distance) {
-  uint64_t disagreements = 0;
-  for (size_t i = 0; i < count; ++i) {
-    const float a = own.distance(i);
-    const float b = peer.distance(i);
-    // Written so that an infinite distance agrees with another one alone.
-    const bool agree = a == b || std::abs(a - b) <= 1e-3f * std::min(a, b) + least_distance;
-    if (!agree) ++disagreements;
-  }
-  return disagreements;
 }
 
 /// Everything about one scene.

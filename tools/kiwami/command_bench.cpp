@@ -8,6 +8,7 @@
 #include "kiwami/bench.h"
 #include "kiwami/bench_pipelines.h"
 #include "kiwami/bench_report.h"
+#include "kiwami/bench_structures.h"
 #include "kiwami/commands.h"
 #include "kiwami/image.h"
 #include "kiwami/known_scenes.h"
@@ -37,6 +38,7 @@ struct BenchOptions {
   uint32_t bvh_width = 0;
   PipelineOptions pipeline;
   std::string pipelines;
+  std::string structures;
   uint32_t rounds = 5;
   uint64_t ray_count = 1u << 20;
   std::string clock = "wall";
@@ -145,8 +147,8 @@ std::vector<std::string> choose_scenes(const BenchOptions& options) {
 }
 
 /// The table of pipelines.
-int run_table(const BenchOptions& options, const BenchSettings& settings,
-              const std::vector<std::string>& scenes) {
+int run_pipeline_table(const BenchOptions& options, const BenchSettings& settings,
+                       const std::vector<std::string>& scenes) {
   const std::vector<BuildOptions> pipelines =
       choose_pipelines(split("--pipelines", options.pipelines), settings.build);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -164,11 +166,31 @@ int run_table(const BenchOptions& options, const BenchSettings& settings,
   return all_right ? 0 : kWrongAnswer;
 }
 
+/// The table of textbook structures.
+int run_structure_table(const BenchOptions& options, const BenchSettings& settings,
+                        const std::vector<std::string>& scenes) {
+  const std::vector<std::string> names = split("--structures", options.structures);
+  check_structures(names);
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  bool all_right = true;
+  for (const std::string& scene : scenes) {
+    const std::vector<StructureRow> rows = run_structures(scene, names, settings);
+    print_table(rows);
+    for (const StructureRow& row : rows) {
+      for (const StructureTrace& trace : row.traces) json.push_back(to_json(row, trace));
+      all_right = all_right && row.wrong.empty();
+    }
+    if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
+  }
+  return all_right ? 0 : kWrongAnswer;
+}
+
 int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   const std::vector<std::string> scenes = choose_scenes(options);
   if (!options.json.empty()) check_writable("--json", options.json);
-  if (!options.pipelines.empty()) return run_table(options, settings, scenes);
+  if (!options.pipelines.empty()) return run_pipeline_table(options, settings, scenes);
+  if (!options.structures.empty()) return run_structure_table(options, settings, scenes);
   const std::string peer = peer_name(settings);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   RatioSummary summary;
@@ -251,6 +273,9 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
   command.add_option("--pipelines", options.pipelines,
                      "A table of pipelines in place of a peer: these builders between commas, or "
                      "all, each alone and with each optimiser");
+  command.add_option("--structures", options.structures,
+                     "A table of textbook structures in place of a peer, some of grid, kd_tree, "
+                     "bih and bvh, next to the library, one ray a call on one thread");
   command.add_option("--rounds", options.rounds, "Runs of each side; their medians count")
       ->check(whole_number(1, 1000))
       ->capture_default_str();

@@ -2,6 +2,7 @@
 #include "kiwami/own_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -75,6 +76,19 @@ uint64_t OwnRun::hash() const {
 float OwnRun::distance(size_t i) const {
   if (!rays_.any_hit) return hits_[i].t;
   return occluded_[i] != 0 ? 0.0f : std::numeric_limits<float>::infinity();
+}
+
+uint64_t count_disagreements(const OwnRun& own, const PeerRun& peer, size_t count,
+                             float least_distance) {
+  uint64_t disagreements = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const float a = own.distance(i);
+    const float b = peer.distance(i);
+    // Written so that an infinite distance agrees with another one alone.
+    const bool agree = a == b || std::abs(a - b) <= 1e-3f * std::min(a, b) + least_distance;
+    if (!agree) ++disagreements;
+  }
+  return disagreements;
 }
 
 }  // namespace kiwami::tools

@@ -7,6 +7,7 @@
 #include "kiwami/bench.h"
 #include "measure/bench_rays.h"
 #include "measure/library.h"
+#include "measure/peer.h"
 
 namespace kiwami::tools {
 
@@ -41,5 +42,14 @@ class OwnRun {
   std::vector<kiwami_hit> hits_;
   std::vector<uint8_t> occluded_;
 };
+
+/// Peers are not watertight, and of triangles at the same place either may be met: up to this share
+/// of the answers may contradict ours.
+constexpr double kMostDisagreements = 0.01;
+
+/// The answers that differ: a hit on one side alone, or distances further apart than rounding and
+/// `least_distance` explain.
+uint64_t count_disagreements(const OwnRun& own, const PeerRun& peer, size_t count,
+                             float least_distance);
 
 }  // namespace kiwami::tools

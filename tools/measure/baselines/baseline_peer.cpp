@@ -67,9 +67,7 @@ class BinaryPeer final : public PeerScene {
   uint64_t bytes() const override { return structure_->bytes(); }
   std::vector<PeerEntrance> entrances(std::span<const kiwami_ray> rays, bool any_hit,
                                       bool) const override {
-    return {{"ray by ray", [this, rays, any_hit] {
-               return std::make_unique<BaselineRun>(*structure_, rays, any_hit);
-             }}};
+    return {{"ray by ray", [this, rays, any_hit] { return make_run(*structure_, rays, any_hit); }}};
   }
 
  private:
@@ -78,6 +76,11 @@ class BinaryPeer final : public PeerScene {
 };
 
 }  // namespace
+
+std::unique_ptr<PeerRun> make_run(const Structure& structure, std::span<const kiwami_ray> rays,
+                                  bool any_hit) {
+  return std::make_unique<BaselineRun>(structure, rays, any_hit);
+}
 
 std::unique_ptr<PeerScene> make_binary_peer(const SceneFile& file) {
   return std::make_unique<BinaryPeer>(file);

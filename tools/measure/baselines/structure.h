@@ -3,11 +3,13 @@
 
 #include <kiwami/kiwami.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "measure/baselines/triangle_test.h"
@@ -32,7 +34,20 @@ class Structure {
   virtual uint64_t bytes() const = 0;
 };
 
+std::unique_ptr<Structure> build_uniform_grid(std::span<const Corners> triangles);
+std::unique_ptr<Structure> build_kd_tree(std::span<const Corners> triangles);
+std::unique_ptr<Structure> build_bounding_interval_hierarchy(std::span<const Corners> triangles);
 std::unique_ptr<Structure> build_binary_bvh(std::span<const Corners> triangles);
+
+/// A structure that can be chosen by name: "grid", "kd_tree", "bih" or "bvh".
+struct NamedStructure {
+  const char* name;
+  std::unique_ptr<Structure> (*build)(std::span<const Corners> triangles);
+};
+constexpr NamedStructure kStructures[] = {{"grid", build_uniform_grid},
+                                          {"kd_tree", build_kd_tree},
+                                          {"bih", build_bounding_interval_hierarchy},
+                                          {"bvh", build_binary_bvh}};
 
 /// What a traversal tells of itself: nothing, or counts.
 struct NoProbe {
@@ -104,6 +119,19 @@ struct PreparedRay {
       backwards[axis] = std::signbit(component);
     }
   }
+};
+
+/// The last triangles that a ray was tested against, where those that reach into several cells are
+/// met again and again.
+class Mailbox {
+ public:
+  Mailbox() { numbers_.fill(KIWAMI_INVALID_ID); }
+  bool has_seen(uint32_t number) {
+    return std::exchange(numbers_[number % numbers_.size()], number) == number;
+  }
+
+ private:
+  std::array<uint32_t, 8> numbers_;
 };
 
 /// The triangles that `order` lists, in this order.
