@@ -126,6 +126,67 @@ class PlotTest(TemporaryFolderTest):
         self.expect_failure(run("plot"), "expected")
 
 
+class ScalingTest(TemporaryFolderTest):
+    def rows(self, triangles):
+        case = {"scene": "terrain", "triangles": triangles, "isa": "avx2", "width": 8}
+        result = []
+        for threads in (1, 2):
+            result.append({**case, "threads": threads, "build_ms": triangles * 2e-4 / threads})
+            result += [{**case, "threads": threads, "rays": rays, "mrays": 5.0 * threads}
+                       for rays in ("bounce_shuffled", "ao")]
+        return result
+
+    def scaling(self, *arguments):
+        self.output = os.path.join(self.folder, "images", "scaling.svg")
+        return run("scaling", *arguments, "-o", self.output)
+
+    def picture(self):
+        return xml.etree.ElementTree.parse(self.output).getroot()
+
+    def test_each_kind_of_ray_and_each_build_is_a_curve(self):
+        source = os.path.join(self.folder, "rows.json")
+        with open(source, "w", encoding="utf-8") as file:
+            json.dump(self.rows(1000000) + self.rows(10000) + self.rows(100000), file)
+        result = self.scaling(source)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        curves = list(self.picture().iter("{http://www.w3.org/2000/svg}polyline"))
+        self.assertEqual(len(curves), 6)
+        for curve in curves:
+            points = [point.split(",") for point in curve.get("points").split()]
+            self.assertEqual(len(points), 3)
+            across = [float(x) for x, _ in points]
+            self.assertAlmostEqual(across[1] - across[0], across[2] - across[1], delta=0.2)
+            self.assertEqual(len({y for _, y in points}), 1, points)
+        texts = [text.text for text in self.picture().iter("{http://www.w3.org/2000/svg}text")]
+        for text in ("ao, 2 threads", "1 thread", "10 k", "1.0 M", "200 ns"):
+            self.assertIn(text, texts)
+
+    def test_a_build_is_measured_at_each_count(self):
+        folder = os.path.join(self.folder, "build", "tools", "kiwami")
+        os.makedirs(folder)
+        command = os.path.join(folder, "kiwami")
+        with open(command, "w", encoding="utf-8") as file:
+            file.write(COMMAND % (sys.executable, self.rows(10000)))
+        os.chmod(command, 0o755)
+        rows = os.path.join(self.folder, "rows.json")
+        result = self.scaling(os.path.join(self.folder, "build"), "--up-to", "100000", "--json",
+                              rows)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stderr.split("\n")[:3],
+                         ["10000 triangles", "30000 triangles", "100000 triangles"])
+        with open(rows, encoding="utf-8") as file:
+            self.assertEqual(len(json.load(file)), 18)
+
+    def test_nothing_to_plot(self):
+        empty = os.path.join(self.folder, "empty.json")
+        with open(empty, "w", encoding="utf-8") as file:
+            file.write("[]")
+        self.expect_failure(self.scaling(empty), "not an array of rows")
+        self.expect_failure(self.scaling(self.folder), "no command")
+        self.expect_failure(self.scaling(os.path.join(self.folder, "none")), "cannot read")
+        self.expect_failure(run("scaling"), "BUILD")
+
+
 if __name__ == "__main__":
     FOLDER = sys.argv.pop(1)
     unittest.main()
