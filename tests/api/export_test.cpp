@@ -292,6 +292,7 @@ TEST_F(ExportTest, DecodedTreesGiveTheLibrarysHits) {
   for (const Format& format : kFormats) {
     const Exported tree = export_mesh(device_, geometry, format);
     std::vector<kiwami_hit> hits;
+    hits.reserve(rays.size());
     for (const kiwami_ray& ray : rays) hits.push_back(trace(tree, ray, mesh));
     EXPECT_TRUE(are_equal(hits, expected)) << format.name;
   }
