@@ -38,9 +38,13 @@ enum {
                                         * part of the root's area, 0 to 1 */
   KIWAMI_PARAMETER_BIN_HALVING = 13,   /* binned SAH: every so many levels the bins are halved, down
                                         * to 8, 1 to 32; 0: never */
-  KIWAMI_PARAMETER_REASSIGN = 14,   /* binned SAH: 1: what a split's plane cuts goes to the cheaper
-                                     * side; 0: to that of its centroid */
-  KIWAMI_PARAMETER_AAC_QUALITY = 17 /* KIWAMI_BUILDER_AAC: 1: high, in larger cells; 0: fast */
+  KIWAMI_PARAMETER_REASSIGN = 14,    /* binned SAH: 1: what a split's plane cuts goes to the cheaper
+                                      * side; 0: to that of its centroid */
+  KIWAMI_PARAMETER_AAC_QUALITY = 17, /* KIWAMI_BUILDER_AAC: 1: high, in larger cells; 0: fast */
+  KIWAMI_PARAMETER_CURVE_CODE = 18,  /* LBVH, PLOC and AAC: 0: plain Morton codes; 1: extended
+                                      * ones, by the shape of the scene and the size of boxes */
+  KIWAMI_PARAMETER_LBVH_DELTA = 19,  /* neighbours are parted 0: by codes; 1: by surface area */
+  KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20 /* neighbours that a leaf begins with at most, 1 to 16 */
 };
 
 /* The stages of a build that have several methods. */

@@ -118,7 +118,8 @@ BinaryBvh AacBuilder::build(Array<BuildPrimitive> primitives, const Config& conf
   if (primitives.empty()) return {};
   BinaryBvh bvh;
   {
-    MortonOrder order = sort_by_morton_code(std::move(primitives), memory, parallel);
+    MortonOrder order =
+        sort_by_morton_code(std::move(primitives), memory, parallel, config.curve_code);
     Array<Cluster> clusters;
     bvh = separate(std::move(order.primitives), clusters, memory);
     CellClustering(order.codes, clusters, config, bvh, memory, parallel).run();

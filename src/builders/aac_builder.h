@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bvh/binary_bvh.h"
-#include "core/memory.h"
-#include "parallel/parallel.h"
+#include "builders/morton_order.h"
 
 namespace kiwami {
 
@@ -19,10 +17,11 @@ class AacBuilder {
   struct Config {
     uint32_t cell_size = 20;  ///< cells of fewer primitives are not halved; 2 or more
     double epsilon = 0.1;     ///< 0 to 0.5: how many clusters fewer large cells hand on
+    CurveCode curve_code = CurveCode::kPlain;
   };
   /// The two settings of the paper.
-  static Config high_quality() { return {20, 0.1}; }
-  static Config fast() { return {4, 0.2}; }
+  static Config high_quality() { return {20, 0.1, CurveCode::kPlain}; }
+  static Config fast() { return {4, 0.2, CurveCode::kPlain}; }
 
   /// One primitive a leaf. The same tree for any number of threads.
   static BinaryBvh build(Array<BuildPrimitive> primitives, const Config& config, Memory& memory,

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <bit>
 
-#include "builders/morton_order.h"
+#include "builders/curve_leaves.h"
 #include "bvh/tree_edit.h"
 
 namespace kiwami {
@@ -28,12 +28,12 @@ struct Border {
 /// 2 i + 1 and 2 i + 2, so that every node knows its place before the tree is complete.
 class LinearHierarchy {
  public:
-  LinearHierarchy(const MortonOrder& order, LbvhBuilder::Delta delta, BinaryBvh& bvh,
+  LinearHierarchy(const LeavesAlongCurve& along, LbvhBuilder::Delta delta, BinaryBvh& bvh,
                   Memory& memory)
-      : order_(order),
+      : along_(along),
         delta_(delta),
         bvh_(bvh),
-        last_(static_cast<uint32_t>(order.primitives.size()) - 1),
+        last_(static_cast<uint32_t>(along.leaves.size()) - 1),
         ends_(memory, 2 * size_t{last_}),
         arrivals_(memory, last_) {
     arrivals_.fill_zero();
@@ -42,7 +42,7 @@ class LinearHierarchy {
   /// Builds all that a leaf completes on its way up.
   void climb(uint32_t leaf) {
     uint32_t left = leaf, right = leaf;
-    BinaryNode node = {order_.primitives[leaf].bounds(), leaf, 1};
+    BinaryNode node = along_.leaves[leaf];
     while (left != 0 || right != last_) {
       const bool is_left = left == 0 || (right != last_ && border(right) < border(left - 1));
       const uint32_t parent = is_left ? right : left - 1;
@@ -62,14 +62,14 @@ class LinearHierarchy {
  private:
   Border border(uint32_t i) const {
     const uint32_t place = i ^ (i + 1);
-    if (delta_ == LbvhBuilder::Delta::kCode) return {order_.codes[i] ^ order_.codes[i + 1], place};
-    Bounds both = order_.primitives[i].bounds();
-    both.extend(order_.primitives[i + 1].bounds());
+    if (delta_ == LbvhBuilder::Delta::kCode) return {along_.codes[i] ^ along_.codes[i + 1], place};
+    Bounds both = along_.leaves[i].bounds;
+    both.extend(along_.leaves[i + 1].bounds);
     // Floats that are not negative compare as their bits do.
     return {std::bit_cast<uint32_t>(both.half_area()), place};
   }
 
-  const MortonOrder& order_;
+  const LeavesAlongCurve& along_;
   LbvhBuilder::Delta delta_;
   BinaryBvh& bvh_;
   uint32_t last_;
@@ -82,17 +82,21 @@ class LinearHierarchy {
 BinaryBvh LbvhBuilder::build(Array<BuildPrimitive> primitives, const Config& config, Memory& memory,
                              const Parallel& parallel) {
   if (primitives.empty()) return {};
-  const size_t count = primitives.size();
-  BinaryBvh bvh;
+  BinaryBvh bvh{{}, Array<uint32_t>(memory, primitives.size())};
   {
-    const MortonOrder order = sort_by_morton_code(std::move(primitives), memory, parallel);
-    bvh = {Array<BinaryNode>(memory, 2 * count - 1), Array<uint32_t>(memory, count)};
-    LinearHierarchy hierarchy(order, config.delta, bvh, memory);
-    parallel.for_blocks(count, kLeafBlock, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        bvh.primitive_ids[i] = order.primitives[i].id;
-        hierarchy.climb(static_cast<uint32_t>(i));
-      }
+    MortonOrder order =
+        sort_by_morton_code(std::move(primitives), memory, parallel, config.curve_code);
+    parallel.for_blocks(order.codes.size(), kLeafBlock, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) bvh.primitive_ids[i] = order.primitives[i].id;
+    });
+    const LeavesAlongCurve along =
+        config.chunk_size > 1
+            ? leaves_by_area(std::move(order), config.chunk_size, memory, parallel)
+            : leaves_of_one(std::move(order), memory, parallel);
+    bvh.nodes = Array<BinaryNode>(memory, 2 * along.leaves.size() - 1);
+    LinearHierarchy hierarchy(along, config.delta, bvh, memory);
+    parallel.for_blocks(along.leaves.size(), kLeafBlock, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) hierarchy.climb(static_cast<uint32_t>(i));
     });
   }
   relabel_depth_first(bvh, memory);

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bvh/binary_bvh.h"
-#include "core/memory.h"
-#include "parallel/parallel.h"
+#include "builders/morton_order.h"
 
 namespace kiwami {
 
@@ -21,9 +19,11 @@ class LbvhBuilder {
   };
   struct Config {
     Delta delta = Delta::kCode;
+    CurveCode curve_code = CurveCode::kPlain;
+    uint32_t chunk_size = 1;  ///< primitives of a leaf at most (leaves_by_area)
   };
 
-  /// One primitive a leaf. The same tree for any number of threads.
+  /// The same tree for any number of threads.
   static BinaryBvh build(Array<BuildPrimitive> primitives, const Config& config, Memory& memory,
                          const Parallel& parallel);
 };

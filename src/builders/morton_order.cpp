@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "math/extended_morton.h"
 #include "math/morton.h"
 #include "parallel/radix_sort.h"
 
@@ -17,13 +18,14 @@ struct CodedIndex {
   uint32_t index;
 };
 
-/// The box of the doubled centroids; unions of boxes are exact, so blocks do not show in it.
-Bounds centroid_bounds(const Array<BuildPrimitive>& primitives, Memory& memory,
-                       const Parallel& parallel) {
+/// The box of what part_of(primitive) gives; unions are exact, so blocks do not show in it.
+template <typename PartOf>
+Bounds bounds_of(const Array<BuildPrimitive>& primitives, Memory& memory, const Parallel& parallel,
+                 PartOf&& part_of) {
   Array<Bounds> of_blocks(memory, (primitives.size() + kBlockSize - 1) / kBlockSize);
   parallel.for_blocks(primitives.size(), kBlockSize, [&](size_t begin, size_t end) {
     Bounds bounds = Bounds::empty();
-    for (size_t i = begin; i < end; ++i) bounds.extend(primitives[i].doubled_centroid());
+    for (size_t i = begin; i < end; ++i) bounds.extend(part_of(primitives[i]));
     of_blocks[begin / kBlockSize] = bounds;
   });
   Bounds all = Bounds::empty();
@@ -31,21 +33,25 @@ Bounds centroid_bounds(const Array<BuildPrimitive>& primitives, Memory& memory,
   return all;
 }
 
-}  // namespace
+Bounds centroid_bounds(const Array<BuildPrimitive>& primitives, Memory& memory,
+                       const Parallel& parallel) {
+  return bounds_of(primitives, memory, parallel,
+                   [](const BuildPrimitive& primitive) { return primitive.doubled_centroid(); });
+}
 
-MortonOrder sort_by_morton_code(Array<BuildPrimitive> primitives, Memory& memory,
-                                const Parallel& parallel) {
+/// Sorts by code_of(primitive), a number of 63 bits.
+template <typename CodeOf>
+MortonOrder sort_by_code(const Array<BuildPrimitive>& primitives, Memory& memory,
+                         const Parallel& parallel, CodeOf&& code_of) {
   const size_t count = primitives.size();
-  const MortonGrid grid(centroid_bounds(primitives, memory, parallel));
   Array<CodedIndex> coded(memory, count);
   parallel.for_blocks(count, kBlockSize, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      coded[i] = {grid.code(primitives[i].doubled_centroid()), static_cast<uint32_t>(i)};
+      coded[i] = {code_of(primitives[i]), static_cast<uint32_t>(i)};
     }
   });
   radix_sort(
-      coded, 3 * kMortonBits, [](const CodedIndex& element) { return element.code; }, memory,
-      parallel);
+      coded, 63, [](const CodedIndex& element) { return element.code; }, memory, parallel);
   MortonOrder order{Array<uint64_t>(memory, count), Array<BuildPrimitive>(memory, count)};
   parallel.for_blocks(count, kBlockSize, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -54,6 +60,26 @@ MortonOrder sort_by_morton_code(Array<BuildPrimitive> primitives, Memory& memory
     }
   });
   return order;
+}
+
+}  // namespace
+
+MortonOrder sort_by_morton_code(Array<BuildPrimitive> primitives, Memory& memory,
+                                const Parallel& parallel, CurveCode code) {
+  const Bounds centroids = centroid_bounds(primitives, memory, parallel);
+  if (code == CurveCode::kPlain) {
+    const MortonGrid grid(centroids);
+    return sort_by_code(primitives, memory, parallel, [&](const BuildPrimitive& primitive) {
+      return grid.code(primitive.doubled_centroid());
+    });
+  }
+  const Bounds objects =
+      bounds_of(primitives, memory, parallel,
+                [](const BuildPrimitive& primitive) { return primitive.bounds(); });
+  const ExtendedMortonGrid grid(centroids, objects);
+  return sort_by_code(primitives, memory, parallel, [&](const BuildPrimitive& primitive) {
+    return grid.code(primitive.bounds());
+  });
 }
 
 uint32_t middle_of_cell(const Array<uint64_t>& codes, uint32_t begin, uint32_t end) {

@@ -13,8 +13,14 @@ struct MortonOrder {
   Array<BuildPrimitive> primitives;  ///< in their order; equal codes by the order given
 };
 
+/// Which codes.
+enum class CurveCode {
+  kPlain,    ///< the bits of the three axes in turn
+  kExtended  ///< the longest axis first, with bits of the size (ExtendedMortonGrid)
+};
+
 MortonOrder sort_by_morton_code(Array<BuildPrimitive> primitives, Memory& memory,
-                                const Parallel& parallel);
+                                const Parallel& parallel, CurveCode code = CurveCode::kPlain);
 
 /// Where the cell of the codes from begin to end is halved: at the first code in which the highest
 /// bit that differs is set. Equal codes are halved by their number.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "builders/morton_order.h"
 #include "bvh/tree_edit.h"
 
 namespace kiwami {
@@ -128,7 +127,8 @@ BinaryBvh PlocBuilder::build(Array<BuildPrimitive> primitives, const Config& con
   BinaryBvh bvh{{}, Array<uint32_t>(memory, count)};
   Array<BinaryNode> leaves;
   {
-    const MortonOrder order = sort_by_morton_code(std::move(primitives), memory, parallel);
+    const MortonOrder order =
+        sort_by_morton_code(std::move(primitives), memory, parallel, config.curve_code);
     leaves = Array<BinaryNode>(memory, count);
     for (uint32_t i = 0; i < count; ++i) {
       bvh.primitive_ids[i] = order.primitives[i].id;

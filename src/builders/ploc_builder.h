@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bvh/binary_bvh.h"
-#include "core/memory.h"
-#include "parallel/parallel.h"
+#include "builders/morton_order.h"
 
 namespace kiwami {
 
@@ -16,6 +14,7 @@ class PlocBuilder {
  public:
   struct Config {
     uint32_t radius = 16;  ///< places to each side that are looked at, 1 to 255
+    CurveCode curve_code = CurveCode::kPlain;
   };
 
   /// One primitive a leaf. The same tree for any number of threads.

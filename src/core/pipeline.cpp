@@ -97,9 +97,31 @@ bool makes_leaves(uint32_t builder) {
          builder == KIWAMI_BUILDER_SPATIAL_SPLIT;
 }
 
+CurveCode curve_code(const SceneParameters& parameters) {
+  return parameters.whole(KIWAMI_PARAMETER_CURVE_CODE) != 0 ? CurveCode::kExtended
+                                                            : CurveCode::kPlain;
+}
+
+LbvhBuilder::Config lbvh_config(const SceneParameters& parameters, uint32_t width) {
+  const bool by_area = parameters.whole(KIWAMI_PARAMETER_LBVH_DELTA) != 0;
+  return {by_area ? LbvhBuilder::Delta::kSurfaceArea : LbvhBuilder::Delta::kCode,
+          curve_code(parameters),
+          std::min(parameters.whole(KIWAMI_PARAMETER_LBVH_CHUNK_SIZE),
+                   binary_leaf_size_of(parameters, width))};
+}
+
+PlocBuilder::Config ploc_config(const SceneParameters& parameters) {
+  PlocBuilder::Config config;
+  config.curve_code = curve_code(parameters);
+  return config;
+}
+
 AacBuilder::Config aac_config(const SceneParameters& parameters) {
-  return parameters.whole(KIWAMI_PARAMETER_AAC_QUALITY) != 0 ? AacBuilder::high_quality()
-                                                             : AacBuilder::fast();
+  AacBuilder::Config config = parameters.whole(KIWAMI_PARAMETER_AAC_QUALITY) != 0
+                                  ? AacBuilder::high_quality()
+                                  : AacBuilder::fast();
+  config.curve_code = curve_code(parameters);
+  return config;
 }
 
 /// One call of the chosen builder.
@@ -108,9 +130,10 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const TriangleSource& so
                       const Parallel& parallel) {
   switch (parameters.whole(KIWAMI_PARAMETER_BUILDER)) {
     case KIWAMI_BUILDER_LBVH:
-      return LbvhBuilder::build(std::move(primitives), {}, memory, parallel);
+      return LbvhBuilder::build(std::move(primitives), lbvh_config(parameters, width), memory,
+                                parallel);
     case KIWAMI_BUILDER_PLOC:
-      return PlocBuilder::build(std::move(primitives), {}, memory, parallel);
+      return PlocBuilder::build(std::move(primitives), ploc_config(parameters), memory, parallel);
     case KIWAMI_BUILDER_TRBVH: {
       BinaryBvh bvh = LbvhBuilder::build(std::move(primitives), {}, memory, parallel);
       optimize_by_treelets(bvh, treelet_config(7, costs_of(parameters, width)), memory, parallel);

@@ -33,6 +33,9 @@ constexpr NumberedBounds kBounds[] = {
     {KIWAMI_PARAMETER_BIN_HALVING, {0, 32, 0, true}},
     {KIWAMI_PARAMETER_REASSIGN, {0, 1, 0, true}},
     {KIWAMI_PARAMETER_AAC_QUALITY, {0, 1, 1, true}},
+    {KIWAMI_PARAMETER_CURVE_CODE, {0, 1, 0, true}},
+    {KIWAMI_PARAMETER_LBVH_DELTA, {0, 1, 0, true}},
+    {KIWAMI_PARAMETER_LBVH_CHUNK_SIZE, {1, 16, 1, true}},
 };
 
 /// The stage whose method a parameter chooses; 0: it chooses none.

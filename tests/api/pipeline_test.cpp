@@ -149,6 +149,38 @@ TEST_F(Pipeline, RepresentativeRaysChangeTheTreeAndNotTheAnswers) {
   EXPECT_EQ(visits[2], visits[1]);
 }
 
+TEST_F(Pipeline, ParametersOfBuildersChangeTheTreeAndNoAnswer) {
+  const Triangles triangles = random_triangles(1000, 5);
+  const std::vector<kiwami_hit> expected =
+      answers(triangles, KIWAMI_BUILDER_BINNED_SAH, {}, KIWAMI_CONTRACTION_OPTIMAL);
+  const Geometry mesh = make_mesh(device_, triangles.desc());
+  const auto cost = [&](uint32_t builder, uint32_t parameter, double value) {
+    const Scene scene = make_scene(device_);
+    EXPECT_EQ(kiwami_scene_attach(scene.get(), mesh.get(), nullptr), KIWAMI_OK);
+    set(scene, KIWAMI_PARAMETER_VALIDATE_BUILD, 1);
+    set(scene, KIWAMI_PARAMETER_BUILDER, builder);
+    set(scene, parameter, value);
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error(device_.get());
+    EXPECT_TRUE(are_equal(closest_hits(scene, random_rays(500, 11)), expected)) << parameter;
+    kiwami_scene_info info{};
+    info.struct_size = sizeof info;
+    EXPECT_EQ(kiwami_scene_get_info(scene.get(), &info), KIWAMI_OK);
+    return info.sah_cost;
+  };
+  const uint32_t cases[][2] = {{KIWAMI_BUILDER_LBVH, KIWAMI_PARAMETER_LBVH_DELTA},
+                               {KIWAMI_BUILDER_LBVH, KIWAMI_PARAMETER_LBVH_CHUNK_SIZE},
+                               {KIWAMI_BUILDER_LBVH, KIWAMI_PARAMETER_CURVE_CODE},
+                               {KIWAMI_BUILDER_PLOC, KIWAMI_PARAMETER_CURVE_CODE},
+                               {KIWAMI_BUILDER_AAC, KIWAMI_PARAMETER_CURVE_CODE},
+                               {KIWAMI_BUILDER_AAC, KIWAMI_PARAMETER_AAC_QUALITY}};
+  for (const auto& [builder, parameter] : cases) {
+    double bounds[2];
+    ASSERT_EQ(kiwami_parameter_bounds(parameter, &bounds[0], &bounds[1], nullptr), KIWAMI_OK);
+    EXPECT_NE(cost(builder, parameter, bounds[0]), cost(builder, parameter, bounds[1]))
+        << builder << " " << parameter;
+  }
+}
+
 TEST_F(Pipeline, ErrorsNameWhatIsWrong) {
   const Scene scene = make_scene(device_);
   const uint32_t methods[KIWAMI_MAX_OPTIMIZERS + 1] = {200};

@@ -3,16 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "builders/curve_leaves.h"
 #include "builders/lbvh_builder.h"
 #include "builders/morton_order.h"
 #include "builders/ploc_builder.h"
 #include "bvh/tree_edit.h"
+#include "math/extended_morton.h"
 #include "math/morton.h"
 #include "parallel/radix_sort.h"
 #include "support/environment.h"
@@ -24,20 +27,23 @@ namespace {
 
 using kiwami::Array;
 using kiwami::BinaryBvh;
+using kiwami::BinaryNode;
 using kiwami::Bounds;
 using kiwami::BuildPrimitive;
+using kiwami::CurveCode;
 using kiwami::LbvhBuilder;
 using kiwami::MortonOrder;
 using kiwami::PlocBuilder;
 
 class MortonBuilders : public BinaryTreeTest {
  protected:
-  MortonOrder order_of(const Mesh& mesh) {
-    return sort_by_morton_code(primitives_of(mesh, memory_), memory_, one_thread_);
+  MortonOrder order_of(const Mesh& mesh, CurveCode code = CurveCode::kPlain) {
+    return sort_by_morton_code(primitives_of(mesh, memory_), memory_, one_thread_, code);
   }
 
-  BinaryBvh lbvh(const Mesh& mesh, LbvhBuilder::Delta delta, const kiwami::Parallel& parallel) {
-    return LbvhBuilder::build(primitives_of(mesh, memory_), {delta}, memory_, parallel);
+  BinaryBvh lbvh(const Mesh& mesh, const LbvhBuilder::Config& config,
+                 const kiwami::Parallel& parallel) {
+    return LbvhBuilder::build(primitives_of(mesh, memory_), config, memory_, parallel);
   }
 
   BinaryBvh ploc(const Mesh& mesh, uint32_t radius, const kiwami::Parallel& parallel) {
@@ -60,6 +66,107 @@ TEST_F(MortonBuilders, CodesTakeTheBitsInTurn) {
   EXPECT_EQ(grid.code({-1, 5, 2}), 0u);
   EXPECT_EQ(grid.code({1, 5, 2}), kiwami::spread_by_three(0x1FFFFF));
   EXPECT_EQ(grid.code({-1, 5, 4}), kiwami::spread_by_three(0x1FFFFF) << 2);
+}
+
+/// An extended code bit by bit: what each bit halves, and whether the box is beyond the middle.
+uint64_t extended_code_by_definition(const Bounds& centroids, double scene_diagonal,
+                                     const Bounds& box) {
+  double low[4], high[4], value[4];
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = centroids.lower[axis];
+    high[axis] = centroids.upper[axis];
+    value[axis] = box.lower[axis] + box.upper[axis];
+  }
+  low[3] = 0;
+  high[3] = scene_diagonal;
+  value[3] = std::hypot(double(box.upper.x) - box.lower.x, double(box.upper.y) - box.lower.y,
+                        double(box.upper.z) - box.lower.z);
+  uint64_t code = 0;
+  for (int bit = 0; bit < 63; ++bit) {
+    int halved = 3;
+    if (bit % 4 != 3) {
+      halved = high[2] - low[2] >= high[1] - low[1] ? 2 : 1;
+      if (high[0] - low[0] > high[halved] - low[halved]) halved = 0;
+    }
+    const double middle = (low[halved] + high[halved]) / 2;
+    const bool is_beyond = value[halved] >= middle;
+    (is_beyond ? low : high)[halved] = middle;
+    code = code << 1 | (is_beyond ? 1 : 0);
+  }
+  return code;
+}
+
+TEST_F(MortonBuilders, ExtendedCodesHalveTheLongestAxisAndTheSizeInTurn) {
+  // Extents and places are such that nothing is rounded.
+  const Bounds centroids = {{0, 0, 0}, {4096, 64, 512}};
+  const Bounds objects = {{0, 0, 0}, {0, 4096, 0}};
+  const kiwami::ExtendedMortonGrid grid(centroids, objects);
+  Random random(seed());
+  for (int trial = 0; trial < 1000; ++trial) {
+    Bounds box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto extent = static_cast<uint32_t>(centroids.upper[axis]);
+      const auto centre = static_cast<float>(random.below(extent));
+      const auto half = static_cast<float>(random.below(512));
+      box.lower[axis] = centre / 2 - half;
+      box.upper[axis] = centre / 2 + half;
+    }
+    ASSERT_EQ(grid.code(box), extended_code_by_definition(centroids, 4096, box));
+  }
+  // A cube without sizes is cut as by plain codes: the last axis first.
+  const kiwami::ExtendedMortonGrid cube({{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {1, 1, 1}});
+  EXPECT_EQ(cube.code({{0, 0, 0.5f}, {0, 0, 0.5f}}) >> 62, 1u);
+  EXPECT_EQ(cube.code({{0, 0.5f, 0}, {0, 0.5f, 0}}) >> 61, 1u);
+  EXPECT_EQ(cube.code({{0.5f, 0, 0}, {0.5f, 0, 0}}) >> 60, 1u);
+}
+
+TEST_F(MortonBuilders, ExtendedCodesPartLargeFromSmall) {
+  // A fine object on a large floor, whose triangles all stand in one cell of a plain code.
+  Mesh mesh = terrain(40);
+  for (Point& vertex : mesh.vertices) vertex = vertex * 0.001f;
+  for (int i = 0; i < 16; ++i) {
+    const auto x = static_cast<float>(i % 4), z = static_cast<float>(i / 4);
+    mesh.add({25 * x - 50, 0, 25 * z - 50}, {25 * x - 25, 0, 25 * z - 50},
+             {25 * x - 25, 0, 25 * z - 25});
+  }
+  const double plain = sah_cost(lbvh(mesh, {}, one_thread_), {});
+  const double extended =
+      sah_cost(lbvh(mesh, {LbvhBuilder::Delta::kCode, CurveCode::kExtended, 1}, one_thread_), {});
+  std::printf("extended %.2f, plain %.2f\n", extended, plain);
+  EXPECT_LT(extended, plain);
+}
+
+TEST_F(MortonBuilders, ChunksHaveTheLeastSumOfAreas) {
+  for (const uint32_t count : {1u, 2u, 5u, 100u, 5000u}) {
+    for (const uint32_t most : {2u, 4u, 16u}) {
+      const MortonOrder order = order_of(soup(count, seed() + count));
+      // The best partition of what stands left of each place, by blocks of 4096.
+      std::vector<double> least(count + 1, std::numeric_limits<double>::infinity());
+      least[0] = 0;
+      for (uint32_t end = 1; end <= count; ++end) {
+        for (uint32_t begin = end - 1;; --begin) {
+          Bounds bounds = Bounds::empty();
+          for (uint32_t i = begin; i < end; ++i) bounds.extend(order.primitives[i].bounds());
+          least[end] = std::min(least[end], least[begin] + double(bounds.half_area()));
+          if (begin % 4096 == 0 || end - begin == most) break;
+        }
+      }
+      const auto along =
+          leaves_by_area(order_of(soup(count, seed() + count)), most, memory_, many_threads_);
+      double sum = 0;
+      uint32_t next = 0;
+      for (size_t i = 0; i < along.leaves.size(); ++i) {
+        const BinaryNode& leaf = along.leaves[i];
+        ASSERT_EQ(leaf.first, next);
+        ASSERT_LE(leaf.count, most);
+        ASSERT_EQ(along.codes[i], order.codes[next]);
+        next += leaf.count;
+        sum += double(leaf.bounds.half_area());
+      }
+      EXPECT_EQ(next, count);
+      EXPECT_NEAR(sum, least[count], 1e-9 * sum) << count << " " << most;
+    }
+  }
 }
 
 TEST_F(MortonBuilders, RadixSortIsAStableSort) {
@@ -114,11 +221,14 @@ TEST_F(MortonBuilders, LbvhCutsEveryRangeAtItsGreatestBorder) {
   for (const uint32_t count : {1u, 2u, 3u, 7u, 100u, 2000u}) {
     // Coarse triangles too, many of which share a code.
     for (const Mesh& mesh : {soup(count, seed() + count), terrain(1 + count / 100)}) {
-      const MortonOrder order = order_of(mesh);
-      for (const auto delta : {LbvhBuilder::Delta::kCode, LbvhBuilder::Delta::kSurfaceArea}) {
-        const BinaryBvh bvh = lbvh(mesh, delta, one_thread_);
-        verify(bvh, mesh, 1);
-        EXPECT_EQ(text_of(bvh), LinearByDefinition(order, delta).text(0, order.primitives.size()));
+      for (const auto code : {CurveCode::kPlain, CurveCode::kExtended}) {
+        const MortonOrder order = order_of(mesh, code);
+        for (const auto delta : {LbvhBuilder::Delta::kCode, LbvhBuilder::Delta::kSurfaceArea}) {
+          const BinaryBvh bvh = lbvh(mesh, {delta, code, 1}, one_thread_);
+          verify(bvh, mesh, 1);
+          EXPECT_EQ(text_of(bvh),
+                    LinearByDefinition(order, delta).text(0, order.primitives.size()));
+        }
       }
     }
   }
@@ -178,8 +288,9 @@ TEST_F(MortonBuilders, PlocJoinsWhatIsNearest) {
 
 TEST_F(MortonBuilders, AreTheSameOnAnyNumberOfThreads) {
   for (const Mesh& mesh : {soup(40000, seed()), spheres(20000, seed())}) {
-    EXPECT_TRUE(are_equal(lbvh(mesh, LbvhBuilder::Delta::kCode, one_thread_),
-                          lbvh(mesh, LbvhBuilder::Delta::kCode, many_threads_)));
+    const LbvhBuilder::Config chunked = {LbvhBuilder::Delta::kCode, CurveCode::kExtended, 8};
+    EXPECT_TRUE(are_equal(lbvh(mesh, {}, one_thread_), lbvh(mesh, {}, many_threads_)));
+    EXPECT_TRUE(are_equal(lbvh(mesh, chunked, one_thread_), lbvh(mesh, chunked, many_threads_)));
     EXPECT_TRUE(are_equal(ploc(mesh, 16, one_thread_), ploc(mesh, 16, many_threads_)));
   }
 }
@@ -187,15 +298,20 @@ TEST_F(MortonBuilders, AreTheSameOnAnyNumberOfThreads) {
 TEST_F(MortonBuilders, DegenerateInputsGiveValidTrees) {
   for (const NamedMesh& named : degenerate_meshes(seed())) {
     SCOPED_TRACE(named.name);
-    verify(lbvh(named.mesh, LbvhBuilder::Delta::kCode, many_threads_), named.mesh, 1);
-    verify(lbvh(named.mesh, LbvhBuilder::Delta::kSurfaceArea, many_threads_), named.mesh, 1);
+    for (const auto code : {CurveCode::kPlain, CurveCode::kExtended}) {
+      for (const uint32_t size : {1u, 3u, 16u}) {
+        for (const auto delta : {LbvhBuilder::Delta::kCode, LbvhBuilder::Delta::kSurfaceArea}) {
+          verify(lbvh(named.mesh, {delta, code, size}, many_threads_), named.mesh, size);
+        }
+      }
+    }
     verify(ploc(named.mesh, 16, many_threads_), named.mesh, 1);
   }
 }
 
 TEST_F(MortonBuilders, PlocCostsLessThanLbvh) {
   for (const Mesh& mesh : {soup(20000, seed()), spheres(20000, seed())}) {
-    const double linear = sah_cost(lbvh(mesh, LbvhBuilder::Delta::kCode, one_thread_), {});
+    const double linear = sah_cost(lbvh(mesh, {}, one_thread_), {});
     const double clustered = sah_cost(ploc(mesh, 16, one_thread_), {});
     std::printf("PLOC %.2f, LBVH %.2f\n", clustered, linear);
     EXPECT_LT(clustered, linear);

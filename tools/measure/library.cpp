@@ -38,7 +38,10 @@ constexpr struct {
                    {"split_alpha", KIWAMI_PARAMETER_SPLIT_ALPHA},
                    {"bin_halving", KIWAMI_PARAMETER_BIN_HALVING},
                    {"reassign", KIWAMI_PARAMETER_REASSIGN},
-                   {"aac_quality", KIWAMI_PARAMETER_AAC_QUALITY}};
+                   {"aac_quality", KIWAMI_PARAMETER_AAC_QUALITY},
+                   {"curve_code", KIWAMI_PARAMETER_CURVE_CODE},
+                   {"lbvh_delta", KIWAMI_PARAMETER_LBVH_DELTA},
+                   {"lbvh_chunk_size", KIWAMI_PARAMETER_LBVH_CHUNK_SIZE}};
 
 std::string parameter_names() {
   std::string names;
