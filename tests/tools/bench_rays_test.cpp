@@ -120,7 +120,7 @@ TEST_F(BenchRaySets, OneCallARayAnswersAsABatch) {
 }
 
 TEST_F(BenchRaySets, EveryEntranceOfEmbreeAnswersAsWeDo) {
-  const auto embree = EmbreeContender::create(file_, KIWAMI_ISA_SSE, 1, true);
+  const auto embree = EmbreeContender::create(file_, {KIWAMI_ISA_SSE, 1, true});
   if (!embree) GTEST_SKIP() << "built without Embree";
   EXPECT_GT(embree->bytes(), 0u);
   for (const std::string& name : bench_ray_names()) {

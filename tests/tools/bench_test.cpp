@@ -48,8 +48,9 @@ TEST(Bench, ExplainsItsOptions) {
   const CommandResult help = run_command({"bench", "--help"});
   EXPECT_EQ(help.exit_code, 0);
   for (const char* option :
-       {"SCENE", "--vs", "--robust", "--rays", "--threads", "--api", "--isa", "--bvh-width",
-        "--rounds", "--ray-count", "--param", "--json", "--list", "--scenes", "--eye"}) {
+       {"SCENE", "--vs", "--robust", "--embree-quality", "--rays", "--threads", "--api", "--isa",
+        "--bvh-width", "--rounds", "--ray-count", "--param", "--json", "--list", "--scenes",
+        "--eye"}) {
     EXPECT_NE(help.output.find(option), std::string::npos) << option;
   }
 }
@@ -103,6 +104,9 @@ TEST(Bench, ComparesWithEmbree) {
   const Json robust =
       bench_rows({"sphere:2", "--threads", "1", "--vs", "embree", "--robust", "--api", "single"});
   EXPECT_TRUE(robust.at(0).at("peer").get<std::string>().ends_with(" robust"));
+  const Json low = bench_rows({"sphere:2", "--threads", "1", "--vs", "embree", "--embree-quality",
+                               "low", "--api", "single"});
+  EXPECT_TRUE(low.at(0).at("peer").get<std::string>().ends_with(" low"));
 }
 
 TEST(Bench, ComparesWithAPlainBinaryHierarchy) {
@@ -262,6 +266,7 @@ TEST(Bench, WrongArgumentsAreRefusedInOneSentence) {
       {{"sphere:1", "--isa", "mmx"}, "mmx"},
       {{"sphere:1", "--bvh-width", "5"}, "--bvh-width"},
       {{"sphere:1", "--vs", "gpu"}, "--vs"},
+      {{"sphere:1", "--embree-quality", "best"}, "--embree-quality"},
       {{"sphere:1", "--rounds", "0"}, "--rounds"},
       {{"sphere:1", "--clock", "sun"}, "--clock"},
       {{"sphere:1", "--clock", "processor", "--threads", "2"}, "--clock"},

@@ -122,8 +122,8 @@ std::unique_ptr<PeerScene> SceneBench::build_peer(const Device& device) const {
   if (settings_.peer == BenchPeer::kBinary) return make_binary_peer(file_);
   if (settings_.peer == BenchPeer::kNone) return nullptr;
   // Its device has as many threads as ours: oneTBB has one limit for all who use it.
-  return EmbreeContender::create(file_, device.info().isa, device.info().thread_count,
-                                 settings_.robust);
+  return EmbreeContender::create(file_, {device.info().isa, device.info().thread_count,
+                                         settings_.robust, settings_.embree_quality});
 }
 
 BuildRow SceneBench::measure_builds(const Device& device, std::unique_ptr<BuiltScene>& scene,
@@ -227,7 +227,10 @@ size_t trace_row_count(const BenchSettings& settings) {
 std::string peer_name(const BenchSettings& settings) {
   if (settings.peer == BenchPeer::kNone) return "";
   if (settings.peer == BenchPeer::kBinary) return "binary BVH";
-  return std::string("Embree ") + embree_version() + (settings.robust ? " robust" : "");
+  std::string name = std::string("Embree ") + embree_version();
+  if (settings.embree_quality == EmbreeQuality::kLow) name += " low";
+  if (settings.embree_quality == EmbreeQuality::kHigh) name += " high";
+  return name + (settings.robust ? " robust" : "");
 }
 
 }  // namespace kiwami::tools

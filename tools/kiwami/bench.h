@@ -9,6 +9,7 @@
 
 #include "kiwami/view_options.h"
 #include "measure/contest.h"
+#include "measure/embree_contender.h"
 #include "measure/library.h"
 
 namespace kiwami::tools {
@@ -33,6 +34,7 @@ struct BenchSettings {
   ViewOptions view;
   BenchPeer peer = BenchPeer::kEmbree;
   bool robust = false;  ///< Embree's robust scene flag
+  EmbreeQuality embree_quality = EmbreeQuality::kDefault;
   uint32_t rounds = 5;
   Clock clock = Clock::kWall;  ///< of the traces; builds are timed by what passes
   size_t ray_count = 1u << 20;
@@ -104,7 +106,7 @@ void run_bench(const std::string& scene, const BenchSettings& settings,
 /// How many rows of traces run_bench will make of a scene.
 size_t trace_row_count(const BenchSettings& settings);
 
-/// "Embree 3.13.5 robust", "binary BVH", or "".
+/// "Embree 3.13.5 low robust", "binary BVH", or "".
 std::string peer_name(const BenchSettings& settings);
 
 }  // namespace kiwami::tools

@@ -31,6 +31,7 @@ struct BenchOptions {
   std::string scenes_folder = ".";
   std::string peer = *embree_version() != '\0' ? "embree" : "none";
   bool robust = false;
+  std::string embree_quality = "default";
   std::string rays;  ///< "": kAllRays, or kPipelineRays in a table of pipelines
   std::string threads = std::thread::hardware_concurrency() > 1 ? "1,2" : "1";
   std::string apis = "single,batch";
@@ -101,6 +102,11 @@ std::vector<BenchApi> parse_apis(const std::string& text) {
   return apis;
 }
 
+EmbreeQuality parse_embree_quality(const std::string& text) {
+  if (text == "low") return EmbreeQuality::kLow;
+  return text == "high" ? EmbreeQuality::kHigh : EmbreeQuality::kDefault;
+}
+
 BenchSettings make_settings(const BenchOptions& options) {
   BenchSettings settings;
   const char* usual_rays = options.pipelines.empty() ? kAllRays : kPipelineRays;
@@ -123,6 +129,7 @@ BenchSettings make_settings(const BenchOptions& options) {
     throw UsageError("--vs is embree, but this command was built without Embree");
   }
   settings.robust = options.robust;
+  settings.embree_quality = parse_embree_quality(options.embree_quality);
   settings.rounds = options.rounds;
   settings.ray_count = options.ray_count;
   settings.clock = options.clock == "wall" ? Clock::kWall : Clock::kProcessor;
@@ -253,6 +260,11 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
       ->check(one_of({"embree", "binary", "none"}))
       ->capture_default_str();
   command.add_flag("--robust", options.robust, "Embree with its robust scene flag");
+  command
+      .add_option("--embree-quality", options.embree_quality,
+                  "The quality of Embree's build: low, default or high")
+      ->check(one_of({"low", "default", "high"}))
+      ->capture_default_str();
   command.add_option("--rays", options.rays,
                      std::string("Which ray sets, between commas: by default ") + kAllRays +
                          "; with --pipelines " + kPipelineRays);

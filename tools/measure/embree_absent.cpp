@@ -6,8 +6,8 @@ namespace kiwami::tools {
 
 std::unique_ptr<EmbreeTracer> EmbreeTracer::create(const SceneFile&, bool) { return nullptr; }
 
-std::unique_ptr<EmbreeContender> EmbreeContender::create(const SceneFile&, uint32_t, uint32_t,
-                                                         bool) {
+std::unique_ptr<EmbreeContender> EmbreeContender::create(const SceneFile&,
+                                                         const EmbreeOptions&) {
   return nullptr;
 }
 

@@ -224,10 +224,23 @@ std::string device_config(uint32_t isa, uint32_t threads) {
   return config;
 }
 
+RTCBuildQuality build_quality(EmbreeQuality quality) {
+  switch (quality) {
+    case EmbreeQuality::kLow:
+      return RTC_BUILD_QUALITY_LOW;
+    case EmbreeQuality::kDefault:
+      return RTC_BUILD_QUALITY_MEDIUM;
+    case EmbreeQuality::kHigh:
+      break;
+  }
+  return RTC_BUILD_QUALITY_HIGH;
+}
+
 class Embree3Contender final : public EmbreeContender {
  public:
-  Embree3Contender(const SceneFile& file, uint32_t isa, uint32_t build_threads, bool robust)
-      : scene_(file, device_config(isa, build_threads), robust) {}
+  Embree3Contender(const SceneFile& file, const EmbreeOptions& options)
+      : scene_(file, {device_config(options.isa, options.build_threads), options.robust,
+                      build_quality(options.quality)}) {}
 
   double build_seconds() const override { return scene_.build_seconds(); }
   uint64_t bytes() const override { return scene_.bytes(); }
@@ -297,9 +310,9 @@ std::string entrance_name(EmbreeEntrance entrance, bool any_hit) {
   return is_coherent(entrance) ? name + " coherent" : name;
 }
 
-std::unique_ptr<EmbreeContender> EmbreeContender::create(const SceneFile& file, uint32_t isa,
-                                                         uint32_t build_threads, bool robust) {
-  return std::make_unique<Embree3Contender>(file, isa, build_threads, robust);
+std::unique_ptr<EmbreeContender> EmbreeContender::create(const SceneFile& file,
+                                                         const EmbreeOptions& options) {
+  return std::make_unique<Embree3Contender>(file, options);
 }
 
 }  // namespace kiwami::tools

@@ -29,16 +29,26 @@ constexpr EmbreeEntrance kEmbreeEntrances[] = {
     EmbreeEntrance::kPacket16Coherent, EmbreeEntrance::kStream,
     EmbreeEntrance::kStreamCoherent};
 
+/// Embree's qualities of a build: low is along a Morton curve, high with spatial splits.
+enum class EmbreeQuality { kLow, kDefault, kHigh };
+
+/// What Embree is asked for.
+struct EmbreeOptions {
+  uint32_t isa = KIWAMI_ISA_AUTO;  ///< limits its instructions to those that our kernels use
+  uint32_t build_threads = 1;
+  bool robust = false;  ///< its robust scene flag
+  EmbreeQuality quality = EmbreeQuality::kDefault;
+};
+
 /// "rtcIntersect8 coherent".
 std::string entrance_name(EmbreeEntrance entrance, bool any_hit);
 
 /// A scene in Embree.
 class EmbreeContender : public PeerScene {
  public:
-  /// Nothing when the tools were built without Embree. `isa`, one of KIWAMI_ISA_*, limits the
-  /// instructions that Embree uses to those that the kernels of that ISA use.
-  static std::unique_ptr<EmbreeContender> create(const SceneFile& file, uint32_t isa,
-                                                 uint32_t build_threads, bool robust);
+  /// Nothing when the tools were built without Embree.
+  static std::unique_ptr<EmbreeContender> create(const SceneFile& file,
+                                                 const EmbreeOptions& options);
 
   /// The rays must outlive the run.
   virtual std::unique_ptr<PeerRun> prepare(std::span<const kiwami_ray> rays, bool any_hit,

@@ -26,15 +26,16 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, con
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const SceneFile& file, const std::string& config, bool robust) {
-  device_ = rtcNewDevice(config.c_str());
+EmbreeScene::EmbreeScene(const SceneFile& file, const EmbreeSettings& settings) {
+  device_ = rtcNewDevice(settings.config.c_str());
   if (device_ == nullptr) {
-    throw std::runtime_error("Embree cannot make a device of '" + config + "'");
+    throw std::runtime_error("Embree cannot make a device of '" + settings.config + "'");
   }
   scene_ = rtcNewScene(device_);
-  if (robust) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene_, settings.quality);
+  if (settings.robust) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   try {
-    for (const Mesh& mesh : file.meshes) attach(mesh);
+    for (const Mesh& mesh : file.meshes) attach(mesh, settings.quality);
     commit();
   } catch (...) {
     release();
@@ -48,8 +49,10 @@ uint64_t EmbreeScene::bytes() const {
   return static_cast<uint64_t>(std::max<int64_t>(0, bytes_.load()));
 }
 
-void EmbreeScene::attach(const Mesh& mesh) {
+void EmbreeScene::attach(const Mesh& mesh, RTCBuildQuality quality) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  // A scene of low quality takes the builder of each geometry from its own quality.
+  rtcSetGeometryBuildQuality(geometry, quality);
   fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices.data(), 12,
               mesh.vertex_count());
   fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.indices.data(), 12,

@@ -12,11 +12,17 @@
 
 namespace kiwami::tools {
 
+/// What an Embree scene is asked for.
+struct EmbreeSettings {
+  std::string config;  ///< the device's, such as "threads=1,isa=avx2"
+  bool robust = false;
+  RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
+};
+
 /// Owns an Embree device and a committed scene whose geometry i is mesh i of the file.
 class EmbreeScene {
  public:
-  /// `config` is the device's, such as "threads=1,isa=avx2".
-  EmbreeScene(const SceneFile& file, const std::string& config, bool robust);
+  EmbreeScene(const SceneFile& file, const EmbreeSettings& settings);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -27,7 +33,7 @@ class EmbreeScene {
   uint64_t bytes() const;
 
  private:
-  void attach(const Mesh& mesh);
+  void attach(const Mesh& mesh, RTCBuildQuality quality);
   void commit();
   void release();
 

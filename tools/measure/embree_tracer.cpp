@@ -10,7 +10,7 @@ namespace {
 
 class Embree3Tracer final : public EmbreeTracer {
  public:
-  Embree3Tracer(const SceneFile& file, bool robust) : scene_(file, "threads=1", robust) {}
+  Embree3Tracer(const SceneFile& file, bool robust) : scene_(file, {"threads=1", robust}) {}
 
   double build_seconds() const override { return scene_.build_seconds(); }
   uint64_t bytes() const override { return scene_.bytes(); }
