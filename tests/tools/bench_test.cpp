@@ -47,10 +47,9 @@ void expect_positive(const Json& row, const std::vector<std::string>& keys) {
 TEST(Bench, ExplainsItsOptions) {
   const CommandResult help = run_command({"bench", "--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* option :
-       {"SCENE", "--vs", "--robust", "--embree-quality", "--rays", "--threads", "--api", "--isa",
-        "--bvh-width", "--rounds", "--ray-count", "--param", "--json", "--list", "--scenes",
-        "--eye"}) {
+  for (const char* option : {"SCENE", "--vs", "--robust", "--embree-quality", "--rays", "--threads",
+                             "--api", "--isa", "--bvh-width", "--rounds", "--ray-count", "--param",
+                             "--json", "--list", "--scenes", "--eye"}) {
     EXPECT_NE(help.output.find(option), std::string::npos) << option;
   }
 }
