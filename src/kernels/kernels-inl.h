@@ -130,8 +130,9 @@ inline void trace_stream(const SceneView& scene, StreamWaiting<N>& waiting, cons
   const int size = waiting.count < kStreamSize ? waiting.count : kStreamSize;
   Query queries[kStreamSize];
   for (int i = 0; i < size; ++i) queries[i].begin(scene, waiting.rays[i]);
-  StreamTraversal<N, Query> traversal{scene.tree, waiting.rays, queries, ~0u >> (32 - size), {}};
-  set_up_stream<N>(waiting.rays, size, traversal.slabs);
+  StreamSlabs<N> slabs;
+  set_up_stream<N>(waiting.rays, size, slabs);
+  StreamTraversal<N, Query> traversal{scene.tree, waiting.rays, queries, ~0u >> (32 - size), slabs};
   traversal.run();
   if constexpr (Query::kOrdered) choice.learn(traversal.visits, traversal.ray_visits);
   for (int i = 0; i < size; ++i) write_answer(batch, waiting.index[i], queries[i].answer());

@@ -171,7 +171,7 @@ struct StreamTraversal {
   ReadyRay* rays;  ///< all of one octant
   Query* queries;
   uint32_t alive;  ///< rays that have not ended
-  StreamSlabs<N> slabs;
+  StreamSlabs<N>& slabs;
   const PlaneOffsets<N>& offsets = kPlaneOffsets<N>[rays[0].backward];
   uint32_t visits = 0;      ///< of nodes by the stream
   uint32_t ray_visits = 0;  ///< of nodes by rays
