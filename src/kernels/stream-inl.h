@@ -284,8 +284,9 @@ struct StreamTraversal {
     store(met_by, met);
     if constexpr (Query::kOrdered) store(entries, first_entry);
     Entry* const bottom = top;
-    for (slots &= marked_lanes(met); slots; slots &= slots - 1) {
-      const int slot = __builtin_ctz(slots);
+    for (slots &= marked_lanes(met); slots;) {
+      const int slot = 31 - __builtin_clz(slots);
+      slots ^= 1u << slot;
       uint32_t bits;
       __builtin_memcpy(&bits, &met_by[slot], sizeof bits);
       top = add(bottom, top, node.child[slot], bits, Query::kOrdered ? entries[slot] : 0.0f);
@@ -295,8 +296,9 @@ struct StreamTraversal {
 
   Entry* visit_in_lanes(const WideNode<N>& node, uint32_t slots, uint32_t active, Entry* top) {
     Entry* const bottom = top;
-    for (; slots; slots &= slots - 1) {
-      const int slot = __builtin_ctz(slots);
+    for (; slots;) {
+      const int slot = 31 - __builtin_clz(slots);
+      slots ^= 1u << slot;
       float entry;
       const uint32_t met = test_rays(node, offsets, slot, slabs, active, entry);
       if (met != 0) top = add(bottom, top, node.child[slot], met, entry);
