@@ -44,7 +44,9 @@ enum {
   KIWAMI_PARAMETER_CURVE_CODE = 18,  /* LBVH, PLOC and AAC: 0: plain Morton codes; 1: extended
                                       * ones, by the shape of the scene and the size of boxes */
   KIWAMI_PARAMETER_LBVH_DELTA = 19,  /* neighbours are parted 0: by codes; 1: by surface area */
-  KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20 /* neighbours that a leaf begins with at most, 1 to 16 */
+  KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20, /* neighbours that a leaf begins with at most, 1 to 16 */
+  KIWAMI_PARAMETER_QUALITY = 30 /* KIWAMI_QUALITY_*: sets builder, optimisers and contraction at
+                                 * once; what is set after it replaces its part */
 };
 
 /* The stages of a build that have several methods. */
@@ -53,6 +55,14 @@ enum {
   KIWAMI_STAGE_OPTIMIZER = 2,  /* changes to the binary or the wide tree, by
                                 * kiwami_scene_set_optimizers */
   KIWAMI_STAGE_CONTRACTION = 3 /* binary tree to wide tree, by KIWAMI_PARAMETER_CONTRACTION */
+};
+
+/* Named points of the pipeline, by KIWAMI_PARAMETER_QUALITY; kiwami_quality_methods tells what they
+ * stand for. */
+enum {
+  KIWAMI_QUALITY_BALANCED = 0, /* the default: a good tree soon */
+  KIWAMI_QUALITY_FAST = 1,     /* the soonest */
+  KIWAMI_QUALITY_BEST = 2      /* for scenes that are built once and traced for long */
 };
 
 /* Methods by stage. The numbers are pinned; kiwami_method_name gives the name of each. */
@@ -167,12 +177,22 @@ KIWAMI_API kiwami_result kiwami_scene_set_representative_rays(kiwami_scene* scen
 /* Sets which optimisers the next commit runs: those that act on the binary tree one after the
  * other, and, when it has become wide, those that act on the wide tree.
  *   methods   count numbers of KIWAMI_OPTIMIZER_*, copied; NULL only if count is 0
- *   count     at most KIWAMI_MAX_OPTIMIZERS; 0: none, the default
+ *   count     at most KIWAMI_MAX_OPTIMIZERS; 0: none. Those of KIWAMI_QUALITY_BALANCED are set
+ *             before the first call
  *   errors    INVALID_ARGUMENT: scene or methods is NULL, count is too large, or a number is no
  *             optimiser's
  * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_set_optimizers(kiwami_scene* scene, const uint32_t* methods,
                                                      size_t count);
+
+/* The methods that a KIWAMI_QUALITY_* stands for. Each pointer may be NULL.
+ *   optimizers        receives at most KIWAMI_MAX_OPTIMIZERS numbers, in their order
+ *   optimizer_count   receives how many there are
+ *   errors            INVALID_ARGUMENT: an unknown quality
+ * [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_quality_methods(uint32_t quality, uint32_t* builder,
+                                                uint32_t* optimizers, size_t* optimizer_count,
+                                                uint32_t* contraction);
 
 /* The lower-case name of a method of one KIWAMI_STAGE_* ("binned_sah"), or NULL where no method has
  * the number. Numbers are below 256. Static text. [any thread]; since 0.1 */

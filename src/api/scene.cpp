@@ -91,6 +91,17 @@ kiwami_result kiwami_scene_set_representative_rays(kiwami_scene* scene, const ki
   });
 }
 
+kiwami_result kiwami_quality_methods(uint32_t quality, uint32_t* builder, uint32_t* optimizers,
+                                     size_t* optimizer_count, uint32_t* contraction) {
+  return guarded(nullptr, [&] {
+    const QualityMethods& methods = quality_methods(quality);
+    if (builder) *builder = methods.builder;
+    if (optimizers) std::copy(methods.optimizers.begin(), methods.optimizers.end(), optimizers);
+    if (optimizer_count) *optimizer_count = methods.optimizers.size();
+    if (contraction) *contraction = methods.contraction;
+  });
+}
+
 const char* kiwami_method_name(uint32_t stage, uint32_t method) {
   return method_name(stage, method);
 }

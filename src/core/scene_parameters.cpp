@@ -2,6 +2,7 @@
 #include "core/scene_parameters.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/error.h"
 #include "core/pipeline.h"
@@ -36,6 +37,18 @@ constexpr NumberedBounds kBounds[] = {
     {KIWAMI_PARAMETER_CURVE_CODE, {0, 1, 0, true}},
     {KIWAMI_PARAMETER_LBVH_DELTA, {0, 1, 0, true}},
     {KIWAMI_PARAMETER_LBVH_CHUNK_SIZE, {1, 16, 1, true}},
+    {KIWAMI_PARAMETER_QUALITY, {0, 2, KIWAMI_QUALITY_BALANCED, true}},
+};
+
+constexpr uint32_t kBalancedOptimizers[] = {KIWAMI_OPTIMIZER_REORDER_SATO};
+constexpr uint32_t kBestOptimizers[] = {KIWAMI_OPTIMIZER_PARALLEL_REINSERTION,
+                                        KIWAMI_OPTIMIZER_REORDER_NARY};
+
+/// By number.
+constexpr QualityMethods kQualities[] = {
+    {KIWAMI_BUILDER_BINNED_SAH, kBalancedOptimizers, KIWAMI_CONTRACTION_OPTIMAL},
+    {KIWAMI_BUILDER_LBVH, {}, KIWAMI_CONTRACTION_SURFACE_AREA},
+    {KIWAMI_BUILDER_BINNED_SAH, kBestOptimizers, KIWAMI_CONTRACTION_OPTIMAL},
 };
 
 /// The stage whose method a parameter chooses; 0: it chooses none.
@@ -76,8 +89,17 @@ ParameterBounds parameter_bounds(uint32_t parameter) {
               parameter);
 }
 
+const QualityMethods& quality_methods(uint32_t quality) {
+  if (quality >= std::size(kQualities)) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "quality is %u, expected one of KIWAMI_QUALITY_*",
+                quality);
+  }
+  return kQualities[quality];
+}
+
 SceneParameters::SceneParameters() {
   for (const NumberedBounds& known : kBounds) values_[known.parameter] = known.bounds.preset;
+  set(KIWAMI_PARAMETER_QUALITY, KIWAMI_QUALITY_BALANCED);
 }
 
 void SceneParameters::set(uint32_t parameter, double value) {
@@ -101,6 +123,12 @@ void SceneParameters::set(uint32_t parameter, double value) {
     check_method(KIWAMI_STAGE_CONTRACTION, "contraction", value);
   }
   values_[parameter] = value;
+  if (parameter == KIWAMI_PARAMETER_QUALITY) {
+    const QualityMethods& methods = quality_methods(whole(parameter));
+    values_[KIWAMI_PARAMETER_BUILDER] = methods.builder;
+    values_[KIWAMI_PARAMETER_CONTRACTION] = methods.contraction;
+    set_optimizers(methods.optimizers);
+  }
 }
 
 void SceneParameters::set_optimizers(std::span<const uint32_t> methods) {

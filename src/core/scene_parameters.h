@@ -17,6 +17,16 @@ struct ParameterBounds {
 /// Throws Error(INVALID_ARGUMENT) for an unknown parameter.
 ParameterBounds parameter_bounds(uint32_t parameter);
 
+/// What a KIWAMI_QUALITY_* stands for.
+struct QualityMethods {
+  uint32_t builder;
+  std::span<const uint32_t> optimizers;
+  uint32_t contraction;
+};
+
+/// Throws Error(INVALID_ARGUMENT) for an unknown quality.
+const QualityMethods& quality_methods(uint32_t quality);
+
 /// The values of all KIWAMI_PARAMETER_*, always within their bounds.
 class SceneParameters {
  public:

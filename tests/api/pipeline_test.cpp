@@ -181,6 +181,52 @@ TEST_F(Pipeline, ParametersOfBuildersChangeTheTreeAndNoAnswer) {
   }
 }
 
+/// The cost of a scene's tree tells pipelines apart.
+TEST_F(Pipeline, AQualityStandsForItsMethods) {
+  const Triangles triangles = random_triangles(3000, 5);
+  const Geometry mesh = make_mesh(device_, triangles.desc());
+  const auto info_after = [&](const Scene& scene) {
+    EXPECT_EQ(kiwami_scene_attach(scene.get(), mesh.get(), nullptr), KIWAMI_OK);
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error(device_.get());
+    return info_of(scene);
+  };
+  std::set<double> costs;
+  for (const uint32_t quality :
+       {KIWAMI_QUALITY_BALANCED, KIWAMI_QUALITY_FAST, KIWAMI_QUALITY_BEST}) {
+    const Scene named = make_scene(device_), spelled = make_scene(device_);
+    set(named, KIWAMI_PARAMETER_QUALITY, quality);
+    uint32_t builder, contraction, optimizers[KIWAMI_MAX_OPTIMIZERS];
+    size_t count;
+    ASSERT_EQ(kiwami_quality_methods(quality, &builder, optimizers, &count, &contraction),
+              KIWAMI_OK);
+    set(spelled, KIWAMI_PARAMETER_BUILDER, builder);
+    set(spelled, KIWAMI_PARAMETER_CONTRACTION, contraction);
+    EXPECT_EQ(kiwami_scene_set_optimizers(spelled.get(), optimizers, count), KIWAMI_OK);
+    const kiwami_scene_info info = info_after(named);
+    EXPECT_EQ(info.sah_cost, info_after(spelled).sah_cost);
+    costs.insert(info.sah_cost);
+    if (quality == KIWAMI_QUALITY_BALANCED) {
+      EXPECT_EQ(info.sah_cost, info_after(make_scene(device_)).sah_cost);
+    }
+  }
+  EXPECT_GE(costs.size(), 2u);
+}
+
+TEST_F(Pipeline, WhatIsSetAfterAQualityReplacesItsPart) {
+  const Triangles triangles = random_triangles(3000, 5);
+  const Geometry mesh = make_mesh(device_, triangles.desc());
+  const auto cost = [&](bool builder_last) {
+    const Scene scene = make_scene(device_);
+    EXPECT_EQ(kiwami_scene_attach(scene.get(), mesh.get(), nullptr), KIWAMI_OK);
+    if (!builder_last) set(scene, KIWAMI_PARAMETER_BUILDER, KIWAMI_BUILDER_PLOC);
+    set(scene, KIWAMI_PARAMETER_QUALITY, KIWAMI_QUALITY_FAST);
+    if (builder_last) set(scene, KIWAMI_PARAMETER_BUILDER, KIWAMI_BUILDER_PLOC);
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK);
+    return info_of(scene).sah_cost;
+  };
+  EXPECT_NE(cost(false), cost(true));
+}
+
 TEST_F(Pipeline, ErrorsNameWhatIsWrong) {
   const Scene scene = make_scene(device_);
   const uint32_t methods[KIWAMI_MAX_OPTIMIZERS + 1] = {200};
@@ -195,6 +241,12 @@ TEST_F(Pipeline, ErrorsNameWhatIsWrong) {
   expect(kiwami_scene_set_optimizers(scene.get(), methods, KIWAMI_MAX_OPTIMIZERS + 1),
          "count is 9, expected at most 8 optimizers");
   EXPECT_EQ(kiwami_scene_set_optimizers(scene.get(), nullptr, 0), KIWAMI_OK);
+  expect(kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_QUALITY, 3),
+         "value is 3 for parameter 30, expected 0 to 2");
+  EXPECT_EQ(kiwami_quality_methods(0, nullptr, nullptr, nullptr, nullptr), KIWAMI_OK);
+  EXPECT_EQ(kiwami_quality_methods(3, nullptr, nullptr, nullptr, nullptr),
+            KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(last_error(), "quality is 3, expected one of KIWAMI_QUALITY_*");
   const kiwami_ray ray{};
   expect(kiwami_scene_set_representative_rays(scene.get(), nullptr, 0, 1),
          "rays is NULL, expected a valid pointer");

@@ -150,14 +150,16 @@ std::vector<BuildOptions> choose_pipelines(const std::vector<std::string>& build
   for (const std::string& builder : all ? method_names(KIWAMI_STAGE_BUILDER) : builders) {
     BuildOptions pipeline = base;
     pipeline.builder = method_of_name(KIWAMI_STAGE_BUILDER, builder);
+    pipeline.optimizers.clear();
     pipelines.push_back(pipeline);
     for (const std::string& optimizer : method_names(KIWAMI_STAGE_OPTIMIZER)) {
       pipeline.optimizers = {method_of_name(KIWAMI_STAGE_OPTIMIZER, optimizer)};
-      if (pipeline.optimizers != base.optimizers) pipelines.push_back(pipeline);
+      pipelines.push_back(pipeline);
     }
   }
   for (const std::string& contraction : method_names(KIWAMI_STAGE_CONTRACTION)) {
     BuildOptions pipeline = base;
+    pipeline.optimizers.clear();
     pipeline.contraction = method_of_name(KIWAMI_STAGE_CONTRACTION, contraction);
     if (pipeline.contraction != base.contraction) pipelines.push_back(pipeline);
   }

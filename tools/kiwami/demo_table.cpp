@@ -34,7 +34,9 @@ Entry make_entry(const SceneFile& file, uint32_t isa, uint32_t width) {
   std::unique_ptr<BuiltScene> scene;
   for (uint32_t i = 0; i < kBuilds; ++i) {
     scene.reset();
-    scene = std::make_unique<BuiltScene>(*entry.device, file, BuildOptions{width, true});
+    BuildOptions build = build_options_of(KIWAMI_QUALITY_BALANCED);
+    build.bvh_width = width;
+    scene = std::make_unique<BuiltScene>(*entry.device, file, build);
     seconds.push_back(scene->info().build_seconds);
   }
   const kiwami_scene_info& info = scene->info();

@@ -6,12 +6,15 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <iterator>
 #include <optional>
 
 namespace kiwami::tools {
 namespace {
 
 constexpr uint32_t kMaxPictureSide = 16384;
+/// By KIWAMI_QUALITY_*.
+constexpr const char* kQualityNames[] = {"balanced", "fast", "best"};
 
 /// The whole text as a number, or nothing.
 template <typename T>
@@ -70,12 +73,18 @@ void add_trace_options(CLI::App& command, TraceOptions& options) {
 }
 
 BuildOptions PipelineOptions::build_options(uint32_t bvh_width) const {
-  BuildOptions options;
+  const auto number = std::find(std::begin(kQualityNames), std::end(kQualityNames), quality);
+  BuildOptions options =
+      build_options_of(static_cast<uint32_t>(number - std::begin(kQualityNames)));
   options.bvh_width = bvh_width;
   options.merge_leaves = merge_leaves;
-  options.builder = method_of_name(KIWAMI_STAGE_BUILDER, builder);
-  options.contraction = method_of_name(KIWAMI_STAGE_CONTRACTION, contraction);
+  if (!builder.empty()) options.builder = method_of_name(KIWAMI_STAGE_BUILDER, builder);
+  if (!contraction.empty()) {
+    options.contraction = method_of_name(KIWAMI_STAGE_CONTRACTION, contraction);
+  }
   if (optimizers.empty()) return options;
+  options.optimizers.clear();
+  if (optimizers == "none") return options;
   for (const std::string& word : split_words("--optimize", optimizers)) {
     options.optimizers.push_back(method_of_name(KIWAMI_STAGE_OPTIMIZER, word));
   }
@@ -83,22 +92,28 @@ BuildOptions PipelineOptions::build_options(uint32_t bvh_width) const {
 }
 
 void add_pipeline_options(CLI::App& command, PipelineOptions& options) {
+  const auto check_quality = [](std::string& text) -> std::string {
+    const bool is_known = std::find(std::begin(kQualityNames), std::end(kQualityNames), text) !=
+                          std::end(kQualityNames);
+    return is_known ? "" : "it is '" + text + "', expected balanced, fast or best";
+  };
   const auto list = [](uint32_t stage) {
     std::string text;
     for (const std::string& name : method_names(stage)) text += (text.empty() ? "" : ", ") + name;
     return text;
   };
   command
-      .add_option("--builder", options.builder,
-                  "How the binary tree is made: " + list(KIWAMI_STAGE_BUILDER))
+      .add_option("--quality", options.quality,
+                  "Which methods build the tree, but for those that the next options name")
+      ->check(CLI::Validator(check_quality, ""))
       ->capture_default_str();
+  command.add_option("--builder", options.builder,
+                     "How the binary tree is made: " + list(KIWAMI_STAGE_BUILDER));
   command.add_option(
       "--optimize", options.optimizers,
-      "What improves it, between commas, in this order: " + list(KIWAMI_STAGE_OPTIMIZER));
-  command
-      .add_option("--contract", options.contraction,
-                  "How it becomes wide: " + list(KIWAMI_STAGE_CONTRACTION))
-      ->capture_default_str();
+      "What improves it, between commas, in this order: none, or " + list(KIWAMI_STAGE_OPTIMIZER));
+  command.add_option("--contract", options.contraction,
+                     "How it becomes wide: " + list(KIWAMI_STAGE_CONTRACTION));
   command.add_flag("--merge-leaves,!--no-merge-leaves", options.merge_leaves,
                    "Bottom nodes and leaf blocks are shared by masks (the default)");
 }
@@ -111,6 +126,7 @@ BuildOptions parse_pipeline(const std::string& option, const std::string& text,
   const std::vector<std::string> methods = split_words(option, parts[0], '+');
   PipelineOptions pipeline;
   pipeline.builder = methods[0];
+  pipeline.optimizers = methods.size() == 1 ? "none" : "";
   for (size_t i = 1; i < methods.size(); ++i) {
     pipeline.optimizers += (i > 1 ? "," : "") + methods[i];
   }

@@ -20,15 +20,16 @@ class UsageError : public std::runtime_error {
 
 /// The methods of a build, by name.
 struct PipelineOptions {
-  std::string builder = "binned_sah";
-  std::string optimizers;  ///< between commas
-  std::string contraction = "optimal";
+  std::string quality = "balanced";
+  std::string builder;      ///< empty: that of the quality
+  std::string optimizers;   ///< between commas; empty: those of the quality; none: none
+  std::string contraction;  ///< empty: that of the quality
   bool merge_leaves = true;
 
   BuildOptions build_options(uint32_t bvh_width) const;
 };
 
-/// Adds --builder, --optimize, --contract and --merge-leaves.
+/// Adds --quality, --builder, --optimize, --contract and --merge-leaves.
 void add_pipeline_options(CLI::App& command, PipelineOptions& options);
 
 /// The build of "BUILDER[+OPTIMIZER]...[,CONTRACTION][,merged|unmerged]", spaces apart, as

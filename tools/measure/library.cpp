@@ -41,7 +41,8 @@ constexpr struct {
                    {"aac_quality", KIWAMI_PARAMETER_AAC_QUALITY},
                    {"curve_code", KIWAMI_PARAMETER_CURVE_CODE},
                    {"lbvh_delta", KIWAMI_PARAMETER_LBVH_DELTA},
-                   {"lbvh_chunk_size", KIWAMI_PARAMETER_LBVH_CHUNK_SIZE}};
+                   {"lbvh_chunk_size", KIWAMI_PARAMETER_LBVH_CHUNK_SIZE},
+                   {"quality", KIWAMI_PARAMETER_QUALITY}};
 
 std::string parameter_names() {
   std::string names;
@@ -256,6 +257,17 @@ uint32_t method_of_name(uint32_t stage, const std::string& name) {
   throw LibraryError(KIWAMI_ERROR_INVALID_ARGUMENT,
                      std::string("there is no ") + stage_name(stage) + " '" + name +
                          "', expected " + (expected.empty() ? "none" : "one of " + expected));
+}
+
+BuildOptions build_options_of(uint32_t quality) {
+  BuildOptions options;
+  size_t count = 0;
+  options.optimizers.resize(KIWAMI_MAX_OPTIMIZERS);
+  check(kiwami_quality_methods(quality, &options.builder, options.optimizers.data(), &count,
+                               &options.contraction),
+        nullptr);
+  options.optimizers.resize(count);
+  return options;
 }
 
 std::string pipeline_name(const BuildOptions& options) {

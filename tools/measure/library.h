@@ -57,6 +57,9 @@ struct BuildOptions {
   std::vector<Parameter> parameters = {};  ///< set after the others, in this order
 };
 
+/// What a KIWAMI_QUALITY_* stands for.
+BuildOptions build_options_of(uint32_t quality);
+
 /// The parameter of "bin_count=16": NAME is that of KIWAMI_PARAMETER_NAME in lower case, or its
 /// number. Throws LibraryError when it is neither, or VALUE is not a number.
 Parameter parse_parameter(const std::string& text);
