@@ -6,8 +6,7 @@ namespace kiwami::tools {
 
 std::unique_ptr<EmbreeTracer> EmbreeTracer::create(const SceneFile&, bool) { return nullptr; }
 
-std::unique_ptr<EmbreeContender> EmbreeContender::create(const SceneFile&,
-                                                         const EmbreeOptions&) {
+std::unique_ptr<EmbreeContender> EmbreeContender::create(const SceneFile&, const EmbreeOptions&) {
   return nullptr;
 }
 
