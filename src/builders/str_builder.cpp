@@ -38,7 +38,8 @@ class Tiling {
   /// The entries of one part, in whole pages, where `axes` axes are still to be cut: as many parts
   /// as there are pages along an edge of a cube of all pages.
   size_t part_of(size_t entries, int axes) const {
-    const auto pages = static_cast<double>((entries + page_size_ - 1) / page_size_);
+    const size_t whole_pages = (entries + page_size_ - 1) / page_size_;
+    const auto pages = static_cast<double>(whole_pages);
     const double pages_of_part = axes == 3 ? std::pow(pages, 2.0 / 3.0) : std::sqrt(pages);
     return page_size_ * static_cast<size_t>(std::ceil(pages_of_part - 1e-9));
   }

@@ -62,7 +62,7 @@ inline void store_row(ReadyRay& ray, size_t offset, vfloat<4> row) {
 }
 
 /// A caller's ray where it lies: at any address.
-typedef kiwami_ray UnalignedRay __attribute__((aligned(1)));
+using UnalignedRay __attribute__((aligned(1))) = kiwami_ray;
 
 inline const UnalignedRay& ray_of(const RayBatch& batch, size_t i) {
   return *reinterpret_cast<const UnalignedRay*>(batch.rays + i * batch.ray_stride);
