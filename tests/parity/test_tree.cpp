@@ -92,7 +92,7 @@ void TestTree::join() {
   const size_t leaf_bytes = leaves<N>().size() * sizeof(kiwami::LeafBlock<N>);
   memory_.resize((node_bytes + leaf_bytes + sizeof(Line) - 1) / sizeof(Line));
   auto* const bytes = reinterpret_cast<unsigned char*>(memory_.data());
-  std::memcpy(bytes, nodes<N>().data(), node_bytes);
+  if (node_bytes != 0) std::memcpy(bytes, nodes<N>().data(), node_bytes);
   std::memcpy(bytes + node_bytes, leaves<N>().data(), leaf_bytes);
   view_.tree.memory = bytes;
   view_.tree.memory_bytes = node_bytes + leaf_bytes;
