@@ -111,8 +111,8 @@ TEST_F(Reorder, NaryKeepsTheTopologyAndTheAnswersAndLowersVisits) {
     Mesh mesh;
     double most_visits;  ///< part of those before
   } cases[] = {{soup(20000, seed()), 0.97}, {spheres(20000, seed()), 1.01}};
-  for (const auto& [mesh, most_visits] : cases) {
-    const TreeScene scene("scene", mesh);
+  for (const auto& one : cases) {
+    const TreeScene scene("scene", one.mesh);
     const auto rays = rays_of(scene, 5000), others = rays_of(scene, 4321);
     for (const uint32_t width : {4u, 8u, 16u}) {
       kiwami::with_width(width, [&](auto n) {
@@ -126,7 +126,7 @@ TEST_F(Reorder, NaryKeepsTheTopologyAndTheAnswersAndLowersVisits) {
         EXPECT_EQ(stopped_after, stopped_before);
         const double part = static_cast<double>(visits_after) / static_cast<double>(visits_before);
         std::printf("width %u: %.1f %% of the visits\n", width, 100.0 * part);
-        EXPECT_LT(part, most_visits);
+        EXPECT_LT(part, one.most_visits);
       });
     }
   }
