@@ -88,7 +88,8 @@ typedef struct kiwami_bvh_desc {
   const kiwami_parameter_value* parameters;
   uint64_t parameter_count;
   const uint32_t* optimizers; /* KIWAMI_OPTIMIZER_*, run in this order on the binary tree. Copied;
-                               * NULL only if optimizer_count is 0. */
+                               * NULL only if optimizer_count is 0. Those that order the wide tree
+                               * for any-hit rays have no effect here. */
   uint64_t optimizer_count;   /* at most KIWAMI_MAX_OPTIMIZERS */
 } kiwami_bvh_desc;
 
