@@ -73,14 +73,18 @@ SceneParameters read_parameters(const kiwami_bvh_desc& desc) {
 
 BvhPlan read_plan(const kiwami_bvh_desc* given, Device& device) {
   const kiwami_bvh_desc desc = read_descriptor(given, kMinimumDescSize, "desc", kDefaultBvhDesc);
-  TriangleMesh* const mesh = object_of(desc.geometry);
-  if (mesh && (desc.boxes || desc.box_count != 0)) {
+  Geometry* const geometry = object_of(desc.geometry);
+  if (geometry && (desc.boxes || desc.box_count != 0)) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "desc has boxes and a geometry, expected one of them");
   }
-  if (mesh && &mesh->device() != &device) {
+  if (geometry && &geometry->device() != &device) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "desc.geometry is of another device, expected one of device");
+  }
+  if (geometry && geometry->kind() != GeometryKind::kTriangleMesh) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "desc.geometry is no triangle mesh, expected one, or boxes");
   }
   if (desc.box_count > kMaxBoxCount) {
     throw Error(KIWAMI_ERROR_TOO_LARGE, "desc.box_count is %llu, expected at most %llu",
@@ -90,7 +94,7 @@ BvhPlan read_plan(const kiwami_bvh_desc* given, Device& device) {
   return {read_width(desc.width, device),
           read_box_array("desc.boxes", desc.boxes, static_cast<size_t>(desc.box_stride),
                          static_cast<size_t>(desc.box_count)),
-          mesh, read_parameters(desc)};
+          static_cast<TriangleMesh*>(geometry), read_parameters(desc)};
 }
 
 void check_cost(const char* name, double cost) {

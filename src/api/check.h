@@ -50,8 +50,9 @@ inline Device* object_of(kiwami_device* handle) { return reinterpret_cast<Device
 inline const Device* object_of(const kiwami_device* handle) {
   return reinterpret_cast<const Device*>(handle);
 }
-inline TriangleMesh* object_of(kiwami_geometry* handle) {
-  return reinterpret_cast<TriangleMesh*>(handle);
+inline Geometry* object_of(kiwami_geometry* handle) { return reinterpret_cast<Geometry*>(handle); }
+inline kiwami_geometry* handle_of(Geometry* geometry) {
+  return reinterpret_cast<kiwami_geometry*>(geometry);
 }
 inline Scene* object_of(kiwami_scene* handle) { return reinterpret_cast<Scene*>(handle); }
 inline const Scene* object_of(const kiwami_scene* handle) {

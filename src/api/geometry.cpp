@@ -2,6 +2,7 @@
 #include "kiwami/geometry.h"
 
 #include "api/check.h"
+#include "core/triangle_mesh.h"
 
 using namespace kiwami;
 using namespace kiwami::api;
@@ -34,8 +35,7 @@ kiwami_result kiwami_triangle_mesh_create(kiwami_device* device,
     check_not_null(geometry, "geometry");
     const kiwami_triangle_mesh_desc checked =
         read_descriptor(desc, kMinimumDescSize, "desc", default_mesh());
-    TriangleMesh* mesh = TriangleMesh::create(*object_of(device), checked);
-    *geometry = reinterpret_cast<kiwami_geometry*>(mesh);
+    *geometry = handle_of(TriangleMesh::create(*object_of(device), checked));
   });
 }
 

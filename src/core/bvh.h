@@ -6,6 +6,7 @@
 #include "core/committed_scene.h"
 #include "core/device.h"
 #include "core/object.h"
+#include "core/triangle_mesh.h"
 #include "kiwami/bvh.h"
 #include "wide/flat_tree.h"
 

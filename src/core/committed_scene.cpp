@@ -9,6 +9,7 @@
 #include "core/build_primitives.h"
 #include "core/error.h"
 #include "core/pipeline.h"
+#include "core/triangle_mesh.h"
 #include "dispatch/dispatch.h"
 
 namespace kiwami {
@@ -29,36 +30,39 @@ double ratio(uint64_t part, uint64_t whole) {
 
 }  // namespace
 
-CommittedScene::MeshReferences::MeshReferences(Memory& memory, const AttachedMesh* meshes,
-                                               size_t count)
-    : meshes_(memory, count) {
+CommittedScene::GeometryReferences::GeometryReferences(Memory& memory,
+                                                       const AttachedGeometry* geometries,
+                                                       size_t count)
+    : geometries_(memory, count) {
   for (size_t i = 0; i < count; ++i) {
-    meshes_[i] = meshes[i].mesh;
-    meshes_[i]->retain();
+    geometries_[i] = geometries[i].geometry;
+    geometries_[i]->retain();
   }
-  std::sort(meshes_.begin(), meshes_.end(), std::less<TriangleMesh*>());
+  std::sort(geometries_.begin(), geometries_.end(), std::less<Geometry*>());
 }
 
-CommittedScene::MeshReferences::~MeshReferences() {
-  for (TriangleMesh* mesh : meshes_) mesh->release();
+CommittedScene::GeometryReferences::~GeometryReferences() {
+  for (Geometry* geometry : geometries_) geometry->release();
 }
 
-size_t CommittedScene::MeshReferences::copied_bytes() const {
+size_t CommittedScene::GeometryReferences::copied_bytes() const {
   size_t bytes = 0;
-  const TriangleMesh* previous = nullptr;
-  for (const TriangleMesh* mesh : meshes_) {
-    if (mesh != previous) bytes += mesh->copied_bytes();
-    previous = mesh;
+  const Geometry* previous = nullptr;
+  for (const Geometry* geometry : geometries_) {
+    if (geometry != previous) bytes += geometry->copied_bytes();
+    previous = geometry;
   }
   return bytes;
 }
 
-CommittedScene::CommittedScene(Device& device, const AttachedMesh* meshes, size_t count,
+CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
                                const SceneParameters& parameters,
                                std::span<const RepresentativeRay> rays)
-    : device_(device), memory_(device.memory().allocator()), references_(memory_, meshes, count) {
+    : device_(device),
+      memory_(device.memory().allocator()),
+      references_(memory_, geometries, count) {
   const auto start = std::chrono::steady_clock::now();
-  number_triangles(meshes, count);
+  number_triangles(geometries, count);
   const uint32_t width = width_of(parameters, device);
   kernels_ = kernels_of(device.isa(), width);
   tree_.width = width;
@@ -74,24 +78,25 @@ void CommittedScene::destroy(CommittedScene* scene) noexcept {
 }
 
 /// Running ids rise by geometry and then by primitive: their order is the order of equal hits.
-void CommittedScene::number_triangles(const AttachedMesh* meshes, size_t count) {
+void CommittedScene::number_triangles(const AttachedGeometry* geometries, size_t count) {
   mesh_views_ = Array<TriangleMeshView>(memory_, count);
   ranges_ = Array<GeometryRange>(memory_, count);
   uint64_t next_id = 0;
   size_t used = 0;
   for (size_t i = 0; i < count; ++i) {
-    const TriangleMesh& mesh = *meshes[i].mesh;
+    if (geometries[i].geometry->kind() != GeometryKind::kTriangleMesh) continue;
+    const TriangleMesh& mesh = static_cast<const TriangleMesh&>(*geometries[i].geometry);
     if (mesh.triangle_count() == 0) continue;
     const uint32_t first_id = static_cast<uint32_t>(next_id);
     next_id += mesh.triangle_count();
     if (next_id > kMaxTriangleCount) {
       throw Error(KIWAMI_ERROR_TOO_LARGE,
                   "the scene has %llu triangles up to geometry %u, expected at most %llu",
-                  static_cast<unsigned long long>(next_id), meshes[i].geometry_id,
+                  static_cast<unsigned long long>(next_id), geometries[i].geometry_id,
                   static_cast<unsigned long long>(kMaxTriangleCount));
     }
-    mesh_views_[used] = mesh.view(first_id, meshes[i].geometry_id);
-    ranges_[used] = {first_id, meshes[i].geometry_id, mesh.mask()};
+    mesh_views_[used] = mesh.view(first_id, geometries[i].geometry_id);
+    ranges_[used] = {first_id, geometries[i].geometry_id, mesh.mask()};
     if (mesh.mask() != ~uint32_t{0}) view_.has_masks = 1;
     ++used;
   }

@@ -15,19 +15,13 @@
 
 namespace kiwami {
 
-/// A geometry with its number in a scene.
-struct AttachedMesh {
-  TriangleMesh* mesh;
-  uint32_t geometry_id;
-};
-
 /// What a commit makes and the kernels read: the tree and the tables around it. Holds the
 /// geometries that it was built from, so that it outlives their detachment. Never changes.
 class CommittedScene : public Object<CommittedScene> {
  public:
-  /// Builds over count meshes by rising geometry_id. Where a method goes by rays, it goes by these,
-  /// or by sampled ones where there are none. Throws Error.
-  CommittedScene(Device& device, const AttachedMesh* meshes, size_t count,
+  /// Builds over count geometries by rising geometry_id. Where a method goes by rays, it goes by
+  /// these, or by sampled ones where there are none. Throws Error.
+  CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
                  const SceneParameters& parameters, std::span<const RepresentativeRay> rays);
   static void destroy(CommittedScene* scene) noexcept;
 
@@ -49,22 +43,22 @@ class CommittedScene : public Object<CommittedScene> {
   void validate() const;
 
  private:
-  /// Counted references to the meshes.
-  class MeshReferences {
+  /// Counted references to the geometries.
+  class GeometryReferences {
    public:
-    MeshReferences(Memory& memory, const AttachedMesh* meshes, size_t count);
-    ~MeshReferences();
-    MeshReferences(const MeshReferences&) = delete;
-    MeshReferences& operator=(const MeshReferences&) = delete;
+    GeometryReferences(Memory& memory, const AttachedGeometry* geometries, size_t count);
+    ~GeometryReferences();
+    GeometryReferences(const GeometryReferences&) = delete;
+    GeometryReferences& operator=(const GeometryReferences&) = delete;
 
-    /// The bytes of their copied buffers, each mesh counted once however often it is attached.
+    /// The bytes of their copied buffers, each geometry counted once however often it is attached.
     size_t copied_bytes() const;
 
    private:
-    Array<TriangleMesh*> meshes_;  ///< sorted by address
+    Array<Geometry*> geometries_;  ///< sorted by address
   };
 
-  void number_triangles(const AttachedMesh* meshes, size_t count);
+  void number_triangles(const AttachedGeometry* geometries, size_t count);
   BinaryBvh build_binary(const SceneParameters& parameters);
   void build(const SceneParameters& parameters, std::span<const RepresentativeRay> rays);
   void describe();
@@ -73,7 +67,7 @@ class CommittedScene : public Object<CommittedScene> {
   // Its own byte count, which gives the exact peak of one build, whatever else the device does.
   mutable Memory memory_;
   TraversalKernels kernels_{};
-  MeshReferences references_;
+  GeometryReferences references_;
   Array<TriangleMeshView> mesh_views_;
   Array<GeometryRange> ranges_;
   WideTree tree_;

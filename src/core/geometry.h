@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bvh/triangle_source.h"
 #include "core/device.h"
 #include "core/memory.h"
 #include "core/object.h"
@@ -9,37 +8,39 @@
 
 namespace kiwami {
 
-/// A triangle mesh: the caller's buffers, or tightly packed copies of them.
-class TriangleMesh : public Object<TriangleMesh> {
- public:
-  /// Throws Error(INVALID_ARGUMENT, TOO_LARGE or OUT_OF_MEMORY).
-  static TriangleMesh* create(Device& device, const kiwami_triangle_mesh_desc& desc);
-  static void destroy(TriangleMesh* mesh) noexcept;
+enum class GeometryKind : uint32_t { kTriangleMesh };
 
-  TriangleMesh(Device& device, const kiwami_triangle_mesh_desc& desc);
+/// What a kiwami_geometry is, whatever its kind: what scenes need of all of them. Each kind is a
+/// final class that derives from it.
+class Geometry : public Object<Geometry> {
+ public:
+  static void destroy(Geometry* geometry) noexcept;
 
   Device& device() const { return *device_; }
-  uint32_t triangle_count() const { return view_.triangle_count; }
-  uint32_t mask() const { return view_.mask; }
+  GeometryKind kind() const { return kind_; }
+  /// A ray meets the geometry only where (ray.mask & mask()) != 0.
+  uint32_t mask() const { return mask_; }
   /// The bytes of the copied buffers; 0 for shared ones.
-  size_t copied_bytes() const { return vertices_.bytes() + indices_.bytes(); }
+  virtual size_t copied_bytes() const = 0;
 
-  /// The mesh as a part of a scene: its running ids begin at first_id.
-  TriangleMeshView view(uint32_t first_id, uint32_t geometry_id) const {
-    TriangleMeshView view = view_;
-    view.first_id = first_id;
-    view.geometry_id = geometry_id;
-    return view;
-  }
+ protected:
+  Geometry(Device& device, GeometryKind kind, uint32_t mask)
+      : device_(device), kind_(kind), mask_(mask) {}
+  ~Geometry() = default;
 
  private:
-  void copy_buffers();
-  void check_indices() const;
+  /// Calls destroy_object with the object as what it is.
+  virtual void end(Memory& memory) noexcept = 0;
 
   Reference<Device> device_;
-  Array<unsigned char> vertices_;
-  Array<unsigned char> indices_;
-  TriangleMeshView view_;
+  GeometryKind kind_;
+  uint32_t mask_;
+};
+
+/// A geometry with its number in a scene.
+struct AttachedGeometry {
+  Geometry* geometry;
+  uint32_t geometry_id;
 };
 
 }  // namespace kiwami

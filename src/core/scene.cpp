@@ -32,34 +32,34 @@ void Scene::destroy(Scene* scene) noexcept {
 }
 
 Scene::~Scene() {
-  for (size_t id = 0; id < meshes_.size(); ++id) {
-    if (meshes_[id]) meshes_[id]->release();
+  for (size_t id = 0; id < geometries_.size(); ++id) {
+    if (geometries_[id]) geometries_[id]->release();
   }
 }
 
-uint32_t Scene::attach(TriangleMesh& mesh) {
-  while (lowest_free_ < meshes_.size() && meshes_[lowest_free_]) ++lowest_free_;
-  if (lowest_free_ == meshes_.size()) meshes_.push_back(nullptr);
-  meshes_[lowest_free_] = &mesh;
-  mesh.retain();
+uint32_t Scene::attach(Geometry& geometry) {
+  while (lowest_free_ < geometries_.size() && geometries_[lowest_free_]) ++lowest_free_;
+  if (lowest_free_ == geometries_.size()) geometries_.push_back(nullptr);
+  geometries_[lowest_free_] = &geometry;
+  geometry.retain();
   return lowest_free_++;
 }
 
 void Scene::detach(uint32_t geometry_id) {
-  if (geometry_id >= meshes_.size() || !meshes_[geometry_id]) {
+  if (geometry_id >= geometries_.size() || !geometries_[geometry_id]) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "geometry_id is %u, expected the number of an attached geometry", geometry_id);
   }
-  meshes_[geometry_id]->release();
-  meshes_[geometry_id] = nullptr;
+  geometries_[geometry_id]->release();
+  geometries_[geometry_id] = nullptr;
   lowest_free_ = std::min(lowest_free_, geometry_id);
 }
 
-Array<AttachedMesh> Scene::attached_meshes() const {
-  Array<AttachedMesh> attached(device_->memory(), meshes_.size());
+Array<AttachedGeometry> Scene::attached_geometries() const {
+  Array<AttachedGeometry> attached(device_->memory(), geometries_.size());
   size_t count = 0;
-  for (size_t id = 0; id < meshes_.size(); ++id) {
-    if (meshes_[id]) attached[count++] = {meshes_[id], static_cast<uint32_t>(id)};
+  for (size_t id = 0; id < geometries_.size(); ++id) {
+    if (geometries_[id]) attached[count++] = {geometries_[id], static_cast<uint32_t>(id)};
   }
   attached.shrink(count);
   return attached;
@@ -67,7 +67,7 @@ Array<AttachedMesh> Scene::attached_meshes() const {
 
 void Scene::commit() {
   Memory& memory = device_->memory();
-  const Array<AttachedMesh> attached = attached_meshes();
+  const Array<AttachedGeometry> attached = attached_geometries();
   committed_ = Reference<CommittedScene>::adopt(
       make_object<CommittedScene>(memory, *device_, attached.data(), attached.size(), parameters_,
                                   std::span<const RepresentativeRay>(rays_.data(), rays_.size())));

@@ -15,7 +15,7 @@ class Scene : public Object<Scene> {
   static Scene* create(Device& device);
   static void destroy(Scene* scene) noexcept;
 
-  explicit Scene(Device& device) : device_(device), meshes_(device.memory()) {}
+  explicit Scene(Device& device) : device_(device), geometries_(device.memory()) {}
   ~Scene();
 
   Device& device() const { return *device_; }
@@ -25,7 +25,7 @@ class Scene : public Object<Scene> {
   void set_representative_rays(Array<RepresentativeRay> rays) { rays_ = std::move(rays); }
 
   /// Returns the lowest free number. Throws Error(OUT_OF_MEMORY).
-  uint32_t attach(TriangleMesh& mesh);
+  uint32_t attach(Geometry& geometry);
   /// Throws Error(INVALID_ARGUMENT) for a number that no geometry has.
   void detach(uint32_t geometry_id);
 
@@ -35,12 +35,12 @@ class Scene : public Object<Scene> {
   CommittedScene* committed() const { return committed_.get(); }
 
  private:
-  Array<AttachedMesh> attached_meshes() const;
+  Array<AttachedGeometry> attached_geometries() const;
 
   Reference<Device> device_;
   SceneParameters parameters_;
   Array<RepresentativeRay> rays_;
-  GrowingArray<TriangleMesh*> meshes_;  ///< by geometry id; nullptr: free
+  GrowingArray<Geometry*> geometries_;  ///< by geometry id; nullptr: free
   uint32_t lowest_free_ = 0;            ///< every lower id is taken
   Reference<CommittedScene> committed_;
 };
