@@ -133,7 +133,7 @@ void CommittedScene::build(const SceneParameters& parameters,
   config.rays = rays;
   tree_ = build_wide_tree(std::move(binary), source(), config, memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
-  optimize_wide_tree(tree_, rays, parameters, memory_, parallel());
+  optimize_wide_tree(tree_, source(), rays, parameters, memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
 
   view_.tree = tree_.view;

@@ -167,6 +167,7 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const TriangleSource& so
 
 /// What an optimiser may know beside its tree.
 struct OptimizerInput {
+  const TriangleSource& source;
   std::span<const RepresentativeRay> rays;
   SahCosts costs;
   Memory& memory;
@@ -221,7 +222,7 @@ constexpr Optimizer kOptimizers[] = {
     {KIWAMI_OPTIMIZER_REORDER_NARY, "reorder_nary", nullptr,
      [](WideTree& tree, const OptimizerInput& input) {
        const NaryReorderConfig config = {input.costs.node_cost, input.costs.leaf_cost};
-       reorder_by_rays(tree, input.rays, config, input.memory, input.parallel);
+       reorder_by_rays(tree, input.source, input.rays, config, input.memory, input.parallel);
      }},
 };
 
@@ -296,7 +297,7 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
   BinaryBvh bvh = run_builder(std::move(primitives), source, parameters, width, memory, parallel);
   for (const uint32_t method : parameters.optimizers()) {
     const Optimizer& optimizer = *find_optimizer(method);
-    if (optimizer.on_binary) optimizer.on_binary(bvh, {{}, costs, memory, parallel});
+    if (optimizer.on_binary) optimizer.on_binary(bvh, {source, {}, costs, memory, parallel});
   }
   // Builders that know nothing of blocks leave one primitive a leaf.
   if (!makes_leaves(parameters.whole(KIWAMI_PARAMETER_BUILDER))) {
@@ -314,13 +315,13 @@ Array<RepresentativeRay> sample_rays_for(const SceneParameters& parameters,
   return goes_by_rays ? sample_rays(source, kSampledRayCount, memory) : Array<RepresentativeRay>();
 }
 
-void optimize_wide_tree(WideTree& tree, std::span<const RepresentativeRay> rays,
-                        const SceneParameters& parameters, Memory& memory,
-                        const Parallel& parallel) {
+void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
+                        std::span<const RepresentativeRay> rays, const SceneParameters& parameters,
+                        Memory& memory, const Parallel& parallel) {
   const SahCosts costs = costs_of(parameters, tree.width);
   for (const uint32_t method : parameters.optimizers()) {
     const Optimizer& optimizer = *find_optimizer(method);
-    if (optimizer.on_wide) optimizer.on_wide(tree, {rays, costs, memory, parallel});
+    if (optimizer.on_wide) optimizer.on_wide(tree, {source, rays, costs, memory, parallel});
   }
 }
 

@@ -34,9 +34,10 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
 Array<RepresentativeRay> sample_rays_for(const SceneParameters& parameters,
                                          const TriangleSource& source, Memory& memory);
 
-/// Runs those of the optimisers that act on the wide tree.
-void optimize_wide_tree(WideTree& tree, std::span<const RepresentativeRay> rays,
-                        const SceneParameters& parameters, Memory& memory,
-                        const Parallel& parallel);
+/// Runs those of the optimisers that act on the wide tree. A tree over boxes has a source without
+/// meshes.
+void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
+                        std::span<const RepresentativeRay> rays, const SceneParameters& parameters,
+                        Memory& memory, const Parallel& parallel);
 
 }  // namespace kiwami

@@ -13,15 +13,23 @@ namespace {
 /// Rays that one task follows.
 constexpr size_t kRayBlock = 64;
 
-/// The triangle in one lane of a leaf block.
-template <int N>
-void read_triangle(const LeafBlock<N>& leaf, int lane, Vec3f corner[3]) {
-  for (int vertex = 0; vertex < 3; ++vertex) {
-    for (int axis = 0; axis < 3; ++axis) {
-      corner[vertex][axis] = leaf.position[vertex][axis][lane];
+/// The triangles in the leaves of a tree, in either layout.
+struct LeafTriangles {
+  const WideTree& tree;
+  const TriangleSource& source;
+
+  /// Calls visit(corners) for the triangles of a leaf until it returns true; then returns true.
+  template <typename Visit>
+  bool visit_each(ChildReference leaf, Visit&& visit) const {
+    const uint32_t* const ids = tree.leaf_ids(tree.number_of(leaf));
+    for (uint32_t lanes = leaf.mask(); lanes != 0; lanes &= lanes - 1) {
+      Vec3f corner[3];
+      source.corners_of(ids[std::countr_zero(lanes)], corner);
+      if (visit(corner)) return true;
     }
+    return false;
   }
-}
+};
 
 /// How often rays meet each slot's box, and how often something below it stops them.
 template <int N>
@@ -31,8 +39,8 @@ class SlotCounters {
     uint32_t met, stopped;
   };
 
-  SlotCounters(const WideTree& tree, Memory& memory)
-      : memory_(tree.view.memory), counts_(memory, tree.node_count * N) {
+  SlotCounters(const LeafTriangles& triangles, Memory& memory)
+      : triangles_(triangles), counts_(memory, triangles.tree.node_count * N) {
     counts_.fill_zero();
   }
 
@@ -40,8 +48,8 @@ class SlotCounters {
   bool follow(const StatisticalRay& ray, ChildReference reference) {
     uint32_t mask = reference.mask();
     if (mask == 0) return false;
-    if (reference.is_leaf()) return is_stopped(ray, leaf_at<N>(memory_, reference), mask);
-    const WideNode<N>& node = node_at<N>(memory_, reference);
+    if (reference.is_leaf()) return is_stopped(ray, reference);
+    const WideNode<N>& node = node_at<N>(triangles_.tree.view.memory, reference);
     Count* const counts = counts_.data() + reference.node_offset() / sizeof node * N;
     bool is_any_stopped = false;
     for (; mask != 0; mask &= mask - 1) {
@@ -60,16 +68,12 @@ class SlotCounters {
   }
 
  private:
-  static bool is_stopped(const StatisticalRay& ray, const LeafBlock<N>& leaf, uint32_t lanes) {
-    for (; lanes != 0; lanes &= lanes - 1) {
-      Vec3f corner[3];
-      read_triangle(leaf, std::countr_zero(lanes), corner);
-      if (!std::isinf(ray.meet(corner))) return true;
-    }
-    return false;
+  bool is_stopped(const StatisticalRay& ray, ChildReference leaf) const {
+    return triangles_.visit_each(
+        leaf, [&](const Vec3f corner[3]) { return !std::isinf(ray.meet(corner)); });
   }
 
-  const unsigned char* memory_;  ///< of the tree
+  LeafTriangles triangles_;
   Array<Count> counts_;
 };
 
@@ -94,14 +98,17 @@ double share_of(double part, double whole) {
 template <int N>
 class NaryReorder {
  public:
-  NaryReorder(WideTree& tree, const NaryReorderConfig& config, Memory& memory)
+  NaryReorder(WideTree& tree, const TriangleSource& source, const NaryReorderConfig& config,
+              Memory& memory)
       : tree_(tree),
+        triangles_{tree, source},
         config_(config),
-        counters_(tree, memory),
+        counters_(triangles_, memory),
         owners_(collect_owners<N>(tree, memory)),
         visits_(memory, owners_.size()) {}
 
   void run(std::span<const RepresentativeRay> rays, const Parallel& parallel) {
+    if (is_over_boxes()) rays = {};
     parallel.for_blocks(rays.size(), kRayBlock, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         counters_.follow({rays[i], tree_.view.centre}, tree_.view.root);
@@ -121,15 +128,17 @@ class NaryReorder {
     double met, stopped, cost;
   };
 
+  bool is_over_boxes() const { return triangles_.source.mesh_count == 0; }
+
   /// By areas: a line through a box of half area A meets a triangle inside of area T with
-  /// probability T / A.
-  Visit guess_leaf(const LeafBlock<N>& leaf, uint32_t lanes, double box_area) const {
+  /// probability T / A. What is known by its box alone is taken to fill it.
+  Visit guess_leaf(ChildReference leaf, double box_area) const {
+    if (is_over_boxes()) return {config_.leaf_cost, 1.0};
     double passed = 1.0;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      Vec3f corner[3];
-      read_triangle(leaf, std::countr_zero(lanes), corner);
+    triangles_.visit_each(leaf, [&](const Vec3f corner[3]) {
       passed *= 1.0 - share_of(area_of(corner), box_area);
-    }
+      return false;
+    });
     return {config_.leaf_cost, 1.0 - passed};
   }
 
@@ -155,9 +164,7 @@ class NaryReorder {
       const auto slot = static_cast<uint32_t>(std::countr_zero(mask));
       const double slot_area = box_of(node, static_cast<int>(slot)).half_area();
       const ChildReference reference = node.child[slot];
-      const Visit visit = reference.is_leaf() ? guess_leaf(leaf_at<N>(tree_.view.memory, reference),
-                                                           reference.mask(), slot_area)
-                                              : visits_[child++];
+      const Visit visit = reference.is_leaf() ? guess_leaf(reference, slot_area) : visits_[child++];
       const auto& count = counters_(owner.node, slot);
       const double reach = share_of(slot_area, area);
       slots[slot] = {correct(reach, count.met, met),
@@ -182,6 +189,7 @@ class NaryReorder {
   }
 
   WideTree& tree_;
+  LeafTriangles triangles_;
   NaryReorderConfig config_;
   SlotCounters<N> counters_;
   Array<SlotOwner> owners_;
@@ -191,10 +199,12 @@ class NaryReorder {
 
 }  // namespace
 
-void reorder_by_rays(WideTree& tree, std::span<const RepresentativeRay> rays,
-                     const NaryReorderConfig& config, Memory& memory, const Parallel& parallel) {
-  with_width(tree.width,
-             [&](auto width) { NaryReorder<width>(tree, config, memory).run(rays, parallel); });
+void reorder_by_rays(WideTree& tree, const TriangleSource& source,
+                     std::span<const RepresentativeRay> rays, const NaryReorderConfig& config,
+                     Memory& memory, const Parallel& parallel) {
+  with_width(tree.width, [&](auto width) {
+    NaryReorder<width>(tree, source, config, memory).run(rays, parallel);
+  });
 }
 
 }  // namespace kiwami

@@ -25,7 +25,9 @@ struct NaryReorderConfig {
 /// Departs from it in the guess that stands in where few rays came: how likely a ray of any kind
 /// meets the triangles of a box, from their areas (after T. Ize, C. Hansen, "RTSAH Traversal Order
 /// for Occlusion Rays", CGF 30(2), 2011). The topology stays, and with it all answers.
-void reorder_by_rays(WideTree& tree, std::span<const RepresentativeRay> rays,
-                     const NaryReorderConfig& config, Memory& memory, const Parallel& parallel);
+/// Of a tree over boxes (the source holds no meshes) the order goes by areas alone.
+void reorder_by_rays(WideTree& tree, const TriangleSource& source,
+                     std::span<const RepresentativeRay> rays, const NaryReorderConfig& config,
+                     Memory& memory, const Parallel& parallel);
 
 }  // namespace kiwami

@@ -99,12 +99,12 @@ class Flattener {
   }
 
   void collect_primitives(FlatTree& flat) const {
-    const LeafBlock<N>* const leaves = tree_.leaves<N>();
     for (const kiwami_bvh_node& node : flat.nodes) {
       if (node.child_count != 0) continue;
+      const uint32_t* const ids = tree_.leaf_ids(node.storage_index);
       uint32_t* to = flat.primitive_ids.data() + node.first_primitive;
       for (uint32_t left = node.storage_mask; left != 0; left &= left - 1) {
-        *to++ = leaves[node.storage_index].id[std::countr_zero(left)];
+        *to++ = ids[std::countr_zero(left)];
       }
     }
   }

@@ -18,26 +18,48 @@ template <typename... Values>
   throw Error(KIWAMI_ERROR_VALIDATION, format, values...);
 }
 
+/// What a tree was built over: triangles, or boxes by rising id.
+struct Primitives {
+  const TriangleSource* source;  ///< nullptr: boxes
+  std::span<const BuildPrimitive> boxes;
+  uint64_t count;  ///< of those that the tree holds
+
+  const char* name() const { return source ? "triangle" : "primitive"; }
+
+  /// All ids are below this.
+  size_t id_limit() const {
+    if (!source) return boxes.empty() ? 0 : size_t{boxes.back().id} + 1;
+    if (source->mesh_count == 0) return 0;
+    const TriangleMeshView& last = source->meshes[source->mesh_count - 1];
+    return size_t{last.first_id} + last.triangle_count;
+  }
+
+  /// The box of an id; nullptr where there is none.
+  const BuildPrimitive* find_box(uint32_t id) const {
+    const auto found = std::lower_bound(
+        boxes.begin(), boxes.end(), id,
+        [](const BuildPrimitive& box, uint32_t wanted) { return box.id < wanted; });
+    return found != boxes.end() && found->id == id ? &*found : nullptr;
+  }
+};
+
 /// The walk over one tree, path by path.
 template <int N>
 class WideVerifier {
  public:
-  WideVerifier(const WideTree& tree, const TriangleSource& source, uint64_t primitive_count,
-               Memory& memory)
+  WideVerifier(const WideTree& tree, const Primitives& primitives, Memory& memory)
       : tree_(tree),
-        source_(source),
+        primitives_(primitives),
         memory_(memory),
-        primitive_count_(primitive_count),
         nodes_(tree.nodes<N>()),
-        leaves_(tree.leaves<N>()),
         owned_slots_(memory, tree.node_count),
         owned_lanes_(memory, tree.leaf_block_count),
-        has_triangle_(memory, id_count(source)),
+        has_primitive_(memory, primitives.id_limit()),
         parts_(memory),
         stack_(memory) {
     owned_slots_.fill_zero();
     owned_lanes_.fill_zero();
-    has_triangle_.fill_zero();
+    has_primitive_.fill_zero();
   }
 
   void run() {
@@ -65,15 +87,20 @@ class WideVerifier {
     Bounds box;
   };
 
-  static size_t id_count(const TriangleSource& source) {
-    if (source.mesh_count == 0) return 0;
-    const TriangleMeshView& last = source.meshes[source.mesh_count - 1];
-    return size_t{last.first_id} + last.triangle_count;
-  }
+  bool has_positions() const { return tree_.leaf_layout == LeafLayout::kTriangles; }
+  const LeafBlock<N>& leaf(uint32_t block) const { return tree_.leaves<N>()[block]; }
+  uint32_t id_of(uint32_t block, int lane) const { return tree_.leaf_ids(block)[lane]; }
 
   void check_sizes() const {
     if (tree_.leaf_width != tree_.width) {
       fail("the leaf width is %u, expected the node width %u", tree_.leaf_width, tree_.width);
+    }
+    if (tree_.view.leaf_layout != tree_.leaf_layout) {
+      fail("the view's leaf layout is %u, expected the tree's, which is %u",
+           static_cast<uint32_t>(tree_.view.leaf_layout), static_cast<uint32_t>(tree_.leaf_layout));
+    }
+    if (has_positions() && !primitives_.source && primitives_.count != 0) {
+      fail("the leaves of a tree over boxes hold triangles, expected ids alone");
     }
     if (tree_.memory.size() != tree_.node_bytes() + tree_.leaf_bytes() ||
         tree_.view.memory != tree_.memory.data() ||
@@ -165,54 +192,61 @@ class WideVerifier {
   }
 
   void visit_leaf(const Visit& visit) {
-    const uint32_t index = claim("leaf block", visit, tree_.leaf_block_count, sizeof(LeafBlock<N>),
-                                 tree_.node_bytes(), owned_lanes_);
-    const LeafBlock<N>& leaf = leaves_[index];
+    const uint32_t index = claim("leaf block", visit, tree_.leaf_block_count,
+                                 tree_.leaf_block_bytes(), tree_.node_bytes(), owned_lanes_);
     for (uint32_t mask = visit.reference.mask(); mask != 0; mask &= mask - 1) {
       const int lane = std::countr_zero(mask);
+      const uint32_t id = id_of(index, lane);
       check_id(index, lane);
       for (uint32_t rest = mask & (mask - 1); rest != 0; rest &= rest - 1) {
-        if (leaf.id[std::countr_zero(rest)] != leaf.id[lane]) continue;
-        fail("triangle %u stands in two lanes of one leaf in leaf block %u", leaf.id[lane], index);
+        if (id_of(index, std::countr_zero(rest)) != id) continue;
+        fail("%s %u stands in two lanes of one leaf in leaf block %u", primitives_.name(), id,
+             index);
       }
-      check_triangle(index, lane, visit.box);
+      if (primitives_.source) {
+        check_triangle(index, lane, visit.box);
+      } else {
+        check_box(index, lane, visit.box);
+      }
       ++used_lanes_;
     }
   }
 
   void check_id(uint32_t block, int lane) {
-    const uint32_t id = leaves_[block].id[lane];
-    if (id >= has_triangle_.size()) {
+    const uint32_t id = id_of(block, lane);
+    if (id >= has_primitive_.size()) {
       fail("lane %d of leaf block %u has id %u, expected below %zu", lane, block, id,
-           has_triangle_.size());
+           has_primitive_.size());
     }
-    if (has_triangle_[id] && !tree_.view.has_duplicates) {
-      fail("triangle %u stands in two lanes", id);
+    if (has_primitive_[id] && !tree_.view.has_duplicates) {
+      fail("%s %u stands in two lanes", primitives_.name(), id);
     }
-    if (has_triangle_[id]) return;
-    has_triangle_[id] = kInParts;
-    ++triangle_count_;
+    if (has_primitive_[id]) return;
+    has_primitive_[id] = kInParts;
+    ++primitive_count_;
+  }
+
+  /// Whether a leaf's box, in the stored frame, holds an interval of an axis.
+  bool holds(const Bounds& box, int axis, float lower, float upper) const {
+    const float centre = tree_.view.centre[axis];
+    return box.lower[axis] <= subtract_down(lower, centre) &&
+           subtract_up(upper, centre) <= box.upper[axis];
   }
 
   void check_triangle(uint32_t block, int lane, const Bounds& box) {
-    const LeafBlock<N>& leaf = leaves_[block];
-    const uint32_t id = leaf.id[lane];
+    const uint32_t id = id_of(block, lane);
     Vec3f corner[3];
-    source_.corners_of(id, corner);
+    primitives_.source->corners_of(id, corner);
     bool is_part = false;
     for (int vertex = 0; vertex < 3; ++vertex) {
       for (int axis = 0; axis < 3; ++axis) {
         const float original = corner[vertex][axis];
-        const float stored = leaf.position[vertex][axis][lane];
-        if (std::memcmp(&stored, &original, sizeof(float)) != 0) {
+        if (has_positions() &&
+            std::memcmp(&leaf(block).position[vertex][axis][lane], &original, sizeof(float)) != 0) {
           fail("vertex %d of triangle %u in leaf block %u is not the original one", vertex, id,
                block);
         }
-        const float centre = tree_.view.centre[axis];
-        if (box.lower[axis] <= subtract_down(original, centre) &&
-            subtract_up(original, centre) <= box.upper[axis]) {
-          continue;
-        }
+        if (holds(box, axis, original, original)) continue;
         is_part = true;
         if (!tree_.view.has_duplicates) {
           fail("triangle %u in leaf block %u leaves its box on axis %d", id, block, axis);
@@ -222,8 +256,20 @@ class WideVerifier {
     if (is_part) {
       parts_.push_back({id, block, box});
     } else {
-      has_triangle_[id] = kWhole;
+      has_primitive_[id] = kWhole;
     }
+  }
+
+  void check_box(uint32_t block, int lane, const Bounds& box) {
+    const uint32_t id = id_of(block, lane);
+    const BuildPrimitive* const own = primitives_.find_box(id);
+    if (!own) fail("lane %d of leaf block %u has id %u, which no primitive has", lane, block, id);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!holds(box, axis, own->lower[axis], own->upper[axis])) {
+        fail("primitive %u in leaf block %u leaves its box on axis %d", id, block, axis);
+      }
+    }
+    has_primitive_[id] = kWhole;
   }
 
   /// Of each triangle that no leaf box holds, the boxes around its parts must cover it.
@@ -234,11 +280,11 @@ class WideVerifier {
     });
     for (const Part *begin = parts.begin(), *end = begin; begin != parts.end(); begin = end) {
       while (end != parts.end() && end->id == begin->id) ++end;
-      if (has_triangle_[begin->id] == kWhole) continue;
+      if (has_primitive_[begin->id] == kWhole) continue;
       Array<Bounds> boxes(memory_, static_cast<size_t>(end - begin));
       for (size_t i = 0; i < boxes.size(); ++i) boxes[i] = begin[i].box;
       Vec3f corner[3];
-      source_.corners_of(begin->id, corner);
+      primitives_.source->corners_of(begin->id, corner);
       if (!is_covered(corner, tree_.view.centre, {boxes.data(), boxes.size()})) {
         fail("the boxes of leaves do not cover triangle %u, which stands in leaf block %u",
              begin->id, begin->block);
@@ -271,10 +317,9 @@ class WideVerifier {
   }
 
   void check_unused_lane(uint32_t index, int lane) const {
-    const LeafBlock<N>& leaf = leaves_[index];
-    bool is_unused = leaf.id[lane] == KIWAMI_INVALID_ID;
-    for (int i = 0; i < 9; ++i) {
-      is_unused = is_unused && std::isnan(leaf.position[i / 3][i % 3][lane]);
+    bool is_unused = id_of(index, lane) == KIWAMI_INVALID_ID;
+    for (int i = 0; has_positions() && i < 9; ++i) {
+      is_unused = is_unused && std::isnan(leaf(index).position[i / 3][i % 3][lane]);
     }
     if (!is_unused) fail("lane %d of leaf block %u has contents but no owner", lane, index);
   }
@@ -283,10 +328,11 @@ class WideVerifier {
     const struct {
       const char* what;
       uint64_t stated, counted;
-    } totals[] = {{"used slots", tree_.used_slots, used_slots_},
-                  {"used lanes", tree_.used_lanes, used_lanes_},
-                  {"levels", tree_.depth, depth_},
-                  {"triangles", primitive_count_, triangle_count_}};
+    } totals[] = {
+        {"used slots", tree_.used_slots, used_slots_},
+        {"used lanes", tree_.used_lanes, used_lanes_},
+        {"levels", tree_.depth, depth_},
+        {primitives_.source ? "triangles" : "primitives", primitives_.count, primitive_count_}};
     for (const auto& total : totals) {
       if (total.stated != total.counted) {
         fail("the tree has %llu %s, expected %llu", static_cast<unsigned long long>(total.counted),
@@ -296,39 +342,45 @@ class WideVerifier {
   }
 
   const WideTree& tree_;
-  const TriangleSource& source_;
+  const Primitives& primitives_;
   Memory& memory_;
-  uint64_t primitive_count_;
   const WideNode<N>* nodes_;
-  const LeafBlock<N>* leaves_;
   Array<uint16_t> owned_slots_;
   Array<uint16_t> owned_lanes_;
-  /// Of has_triangle_, for a triangle that stands in some lane.
+  /// Of has_primitive_, for a primitive that stands in some lane.
   static constexpr uint8_t kInParts = 1, kWhole = 2;
 
-  Array<uint8_t> has_triangle_;
+  Array<uint8_t> has_primitive_;
   GrowingArray<Part> parts_;
   GrowingArray<Visit> stack_;
   uint64_t used_slots_ = 0;
   uint64_t used_lanes_ = 0;
-  uint64_t triangle_count_ = 0;
+  uint64_t primitive_count_ = 0;
   uint32_t depth_ = 0;
 };
+
+void verify(const WideTree& tree, const Primitives& primitives, Memory& memory) {
+  switch (tree.width) {
+    case 4:
+      return WideVerifier<4>(tree, primitives, memory).run();
+    case 8:
+      return WideVerifier<8>(tree, primitives, memory).run();
+    case 16:
+      return WideVerifier<16>(tree, primitives, memory).run();
+    default:
+      fail("the tree's width is %u, expected 4, 8 or 16", tree.width);
+  }
+}
 
 }  // namespace
 
 void verify_wide_tree(const WideTree& tree, const TriangleSource& source, uint64_t primitive_count,
                       Memory& memory) {
-  switch (tree.width) {
-    case 4:
-      return WideVerifier<4>(tree, source, primitive_count, memory).run();
-    case 8:
-      return WideVerifier<8>(tree, source, primitive_count, memory).run();
-    case 16:
-      return WideVerifier<16>(tree, source, primitive_count, memory).run();
-    default:
-      fail("the tree's width is %u, expected 4, 8 or 16", tree.width);
-  }
+  verify(tree, {&source, {}, primitive_count}, memory);
+}
+
+void verify_wide_tree(const WideTree& tree, std::span<const BuildPrimitive> boxes, Memory& memory) {
+  verify(tree, {nullptr, boxes, boxes.size()}, memory);
 }
 
 }  // namespace kiwami

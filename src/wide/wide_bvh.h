@@ -58,6 +58,27 @@ struct alignas(32) LeafBlock {
 static_assert(sizeof(LeafBlock<4>) == 160 && sizeof(LeafBlock<8>) == 320 &&
               sizeof(LeafBlock<16>) == 640);
 
+/// W ids alone, of primitives whose shape is found elsewhere: the compact layout of triangles, and
+/// trees over boxes. An unused lane is in no mask; its id is KIWAMI_INVALID_ID.
+template <int W>
+struct alignas(4 * W) IndexBlock {
+  uint32_t id[W];
+};
+static_assert(sizeof(IndexBlock<4>) == 16 && sizeof(IndexBlock<8>) == 32 &&
+              sizeof(IndexBlock<16>) == 64);
+
+/// What all leaf blocks of a tree are.
+enum class LeafLayout : uint32_t { kTriangles = 0, kIndices = 1 };
+
+/// The size of a leaf block, and where in it the ids stand.
+constexpr size_t leaf_block_bytes(LeafLayout layout, uint32_t width) {
+  return width * (layout == LeafLayout::kTriangles ? sizeof(LeafBlock<4>) : sizeof(IndexBlock<4>)) /
+         4;
+}
+constexpr size_t leaf_ids_offset(LeafLayout layout, uint32_t width) {
+  return layout == LeafLayout::kTriangles ? width * offsetof(LeafBlock<4>, id) / 4 : 0;
+}
+
 /// Nodes on the longest path from the root to a leaf; bounds the traversal stack.
 constexpr uint32_t kMaxWideDepth = 72;
 
@@ -69,16 +90,21 @@ template <int N>
 const LeafBlock<N>& leaf_at(const unsigned char* memory, ChildReference reference) {
   return *reinterpret_cast<const LeafBlock<N>*>(memory + reference.leaf_offset());
 }
+template <int N>
+const IndexBlock<N>& index_leaf_at(const unsigned char* memory, ChildReference reference) {
+  return *reinterpret_cast<const IndexBlock<N>*>(memory + reference.leaf_offset());
+}
 
 /// What a kernel needs of a tree. Plain data: it crosses from baseline to ISA code.
 struct TreeView {
-  const unsigned char* memory;  ///< WideNode<N>[], then LeafBlock<N>[]
+  const unsigned char* memory;  ///< WideNode<N>[], then LeafBlock<N>[] or IndexBlock<N>[]
   ChildReference root;          ///< with a mask of 0: nothing to hit
   Vec3f centre;                 ///< boxes are relative to it
   float centre_padding;         ///< 0; four floats are read at once
   Vec3f greatest_bound;     ///< per axis, the greatest absolute box coordinate in the stored frame
   float bound_padding;      ///< 0
   uint32_t has_duplicates;  ///< 1: a triangle may stand in several leaves
+  LeafLayout leaf_layout;
   uint64_t memory_bytes;
 };
 

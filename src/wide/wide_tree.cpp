@@ -5,6 +5,7 @@
 #include <cfloat>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "core/error.h"
 #include "math/rounding.h"
@@ -42,7 +43,9 @@ struct Contents {
 Array<float> weigh_by_rays(const BinaryBvh& binary, const TriangleSource& source,
                            const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {
   if (config.contraction != ContractionMethod::kRayDistribution) return {};
-  return measure_visit_weights(binary, source, config.rays, kGuessWeight, memory, parallel);
+  // Rays that can meet no triangle would say that the whole of each line is visited.
+  const auto rays = source.mesh_count != 0 ? config.rays : std::span<const RepresentativeRay>();
+  return measure_visit_weights(binary, source, rays, kGuessWeight, memory, parallel);
 }
 
 SharedPlaces place(const Array<uint8_t>& sizes, const WideTreeConfig& config, Memory& memory) {
@@ -55,7 +58,7 @@ Layout make_layout(const BinaryBvh& binary, const TriangleSource& source,
   Layout layout{contract_by(binary, source, config, memory, parallel), {}, {}};
   for (const uint8_t size : layout.contraction.leaf_sizes) {
     if (size <= config.width) continue;
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "a leaf owns %u triangles, expected at most %u",
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "a leaf owns %u primitives, expected at most %u",
                 size, config.width);
   }
   const Array<ContractedNode>& nodes = layout.contraction.nodes;
@@ -102,8 +105,8 @@ ChildReference reference_of(const ContractedSlot& slot, const Layout& layout,
                         : tree.node_reference(place.index, place.mask);
 }
 
-/// Writes the nodes and leaf blocks of a tree.
-template <int N>
+/// Writes the nodes and leaf blocks of a tree. Block is its LeafBlock or IndexBlock.
+template <int N, typename Block>
 class Packer {
  public:
   Packer(const Contents& contents, const TriangleSource& source, const Layout& layout,
@@ -113,7 +116,7 @@ class Packer {
         layout_(layout),
         tree_(tree),
         nodes_(tree.nodes<N>()),
-        leaves_(tree.leaves<N>()) {}
+        leaves_(tree.blocks<Block>()) {}
 
   void run(const Parallel& parallel) {
     parallel.for_blocks(layout_.nodes.count, kPackingBlock, [this](size_t begin, size_t end) {
@@ -145,9 +148,13 @@ class Packer {
     }
   }
 
-  static LeafBlock<N> unused_leaf() {
-    LeafBlock<N> leaf;
-    std::fill_n(&leaf.position[0][0][0], 9 * N, std::numeric_limits<float>::quiet_NaN());
+  static constexpr bool kHasPositions = std::is_same_v<Block, LeafBlock<N>>;
+
+  static Block unused_leaf() {
+    Block leaf;
+    if constexpr (kHasPositions) {
+      std::fill_n(&leaf.position[0][0][0], 9 * N, std::numeric_limits<float>::quiet_NaN());
+    }
     std::fill_n(leaf.id, N, KIWAMI_INVALID_ID);
     return leaf;
   }
@@ -173,19 +180,21 @@ class Packer {
     const SharedPlace& place = layout_.leaves.places[leaf];
     const uint32_t* ids = contents_.primitive_ids.data() + contents_.first_primitive[leaf];
     for (uint32_t i = 0; i < layout_.contraction.leaf_sizes[leaf]; ++i) {
-      pack_triangle(ids[i], leaves_[place.index], place.first + i);
+      pack_primitive(ids[i], leaves_[place.index], place.first + i);
     }
   }
 
-  void pack_triangle(uint32_t id, LeafBlock<N>& block, uint32_t lane) {
-    Vec3f corner[3];
-    source_.corners_of(id, corner);
-    for (int vertex = 0; vertex < 3; ++vertex) {
-      for (int axis = 0; axis < 3; ++axis) {
-        block.position[vertex][axis][lane] = corner[vertex][axis];
+  void pack_primitive(uint32_t id, Block& block, uint32_t lane) {
+    block.id[lane] = id;
+    if constexpr (kHasPositions) {
+      Vec3f corner[3];
+      source_.corners_of(id, corner);
+      for (int vertex = 0; vertex < 3; ++vertex) {
+        for (int axis = 0; axis < 3; ++axis) {
+          block.position[vertex][axis][lane] = corner[vertex][axis];
+        }
       }
     }
-    block.id[lane] = id;
   }
 
   const Contents& contents_;
@@ -193,14 +202,18 @@ class Packer {
   const Layout& layout_;
   const WideTree& tree_;
   WideNode<N>* nodes_;
-  LeafBlock<N>* leaves_;
+  Block* leaves_;
 };
 
 template <int N>
 void pack(const Contents& contents, const TriangleSource& source, const Layout& layout,
           WideTree& tree, Memory& memory, const Parallel& parallel) {
   tree.memory = Array<unsigned char>(memory, tree.node_bytes() + tree.leaf_bytes());
-  Packer<N>(contents, source, layout, tree).run(parallel);
+  if (tree.leaf_layout == LeafLayout::kTriangles) {
+    Packer<N, LeafBlock<N>>(contents, source, layout, tree).run(parallel);
+  } else {
+    Packer<N, IndexBlock<N>>(contents, source, layout, tree).run(parallel);
+  }
 }
 
 /// The frame of the stored boxes. Boxes lie within the root's, and rounding keeps that order, so
@@ -246,6 +259,7 @@ WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
   }
   WideTree tree;
   tree.width = tree.leaf_width = config.width;
+  tree.leaf_layout = tree.view.leaf_layout = config.leaf_layout;
   if (binary.primitive_ids.empty()) {
     tree.memory = Array<unsigned char>(memory, 0);
     return tree;

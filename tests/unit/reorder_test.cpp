@@ -119,7 +119,7 @@ TEST_F(Reorder, NaryKeepsTheTopologyAndTheAnswersAndLowersVisits) {
         WideTree tree = build(scene, width);
         const auto before = contents<n>(tree);
         const auto [visits_before, stopped_before] = visits(tree, others);
-        kiwami::reorder_by_rays(tree, rays, {}, memory_, Threads(1));
+        kiwami::reorder_by_rays(tree, scene.source(), rays, {}, memory_, Threads(1));
         verify(tree, scene);
         EXPECT_EQ(contents<n>(tree), before);
         const auto [visits_after, stopped_after] = visits(tree, others);
@@ -136,9 +136,9 @@ TEST_F(Reorder, NaryIsTheSameOnAnyNumberOfThreads) {
   const TreeScene scene("soup", soup(10000, seed()));
   const auto rays = rays_of(scene, 3000);
   WideTree expected = build(scene, 8), tree = build(scene, 8);
-  kiwami::reorder_by_rays(expected, rays, {}, memory_, Threads(1));
+  kiwami::reorder_by_rays(expected, scene.source(), rays, {}, memory_, Threads(1));
   const kiwami::Parallel plain(0, run_on_plain_threads, nullptr, 8);
-  kiwami::reorder_by_rays(tree, rays, {}, memory_, plain);
+  kiwami::reorder_by_rays(tree, scene.source(), rays, {}, memory_, plain);
   EXPECT_EQ(std::memcmp(tree.memory.data(), expected.memory.data(), tree.memory.bytes()), 0);
 }
 
@@ -158,7 +158,7 @@ TEST_F(Reorder, NaryVisitsFirstWhatStopsTheRaysItWasGiven) {
       rays[i] = {{x + 0.25f, y, 5.0f}, 0.0f, {0, 0, -1}, 10.0f};
     }
     WideTree tree = build(scene, 4);
-    kiwami::reorder_by_rays(tree, rays, {}, memory_, Threads(1));
+    kiwami::reorder_by_rays(tree, scene.source(), rays, {}, memory_, Threads(1));
     verify(tree, scene);
     ASSERT_FALSE(tree.view.root.is_leaf());
     const int first = std::countr_zero(tree.view.root.mask());
@@ -174,7 +174,7 @@ TEST_F(Reorder, DegenerateTreesStayValid) {
     const auto rays = rays_of(scene, 100);
     for (const uint32_t width : {4u, 8u, 16u}) {
       WideTree tree = build(scene, width);
-      kiwami::reorder_by_rays(tree, rays, {}, memory_, Threads(1));
+      kiwami::reorder_by_rays(tree, scene.source(), rays, {}, memory_, Threads(1));
       verify(tree, scene);
       kiwami::reorder_by_surface_area(tree, memory_, Threads(1));
       verify(tree, scene);
@@ -182,7 +182,7 @@ TEST_F(Reorder, DegenerateTreesStayValid) {
   }
   WideTree empty = kiwami::build_wide_tree({}, {nullptr, 0}, {}, memory_, Threads(1));
   kiwami::reorder_by_surface_area(empty, memory_, Threads(1));
-  kiwami::reorder_by_rays(empty, {}, {}, memory_, Threads(1));
+  kiwami::reorder_by_rays(empty, {nullptr, 0}, {}, {}, memory_, Threads(1));
 }
 
 TEST_F(Reorder, SampledRaysStartOnSurfacesInProportionToTheirArea) {
