@@ -59,7 +59,9 @@ enum {
   KIWAMI_ERROR_TOO_LARGE = -5,       /* the input exceeds a documented limit of the library */
   KIWAMI_ERROR_CALLBACK = -6,        /* a callback of the caller reported failure */
   KIWAMI_ERROR_VALIDATION = -7,      /* a tree breaks one of its invariants (validator calls) */
-  KIWAMI_ERROR_INTERNAL = -8         /* a defect of the library; please report it */
+  KIWAMI_ERROR_INTERNAL = -8,        /* a defect of the library; please report it */
+  KIWAMI_ERROR_CAPACITY = -9         /* the caller's array is too small: it holds what fits, and the
+                                      * call tells what it needs */
 };
 
 /* See device.h. */

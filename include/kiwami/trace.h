@@ -141,6 +141,46 @@ KIWAMI_API kiwami_result kiwami_any_hit_fields(const kiwami_scene* scene,
                                                const kiwami_output_field* occluded, size_t count,
                                                const kiwami_query* query);
 
+/* Finds several hits of each ray, by rising (t, instance, geometry, primitive). A triangle that a
+ * ray crosses is one hit, whatever tree the scene has; a segment with both ends outside of a closed
+ * mesh has an even number of them. rays          count rays, ray_stride bytes apart (0:
+ * sizeof(kiwami_ray)); NULL only if count is 0 max_hits      of each ray, the nearest so many; 0:
+ * all hits          receives the hits of ray i at offsets[i] to offsets[i + 1] - 1, as far as they
+ * fit: hit_capacity hits, tightly packed; may not overlap the rays; NULL only with hit_capacity 0,
+ * when hits are only counted offsets       receives count + 1 numbers; the last one is the number
+ * of all hits query         NULL for the defaults Large batches run on the device's threads; the
+ * answer does not depend on their number. Hits pass through memory of the device, at most those of
+ * 16384 rays at a time. errors        CAPACITY: hit_capacity is below offsets[count] and not 0 with
+ * hits NULL; all offsets, and all hits below hit_capacity, are written. OUT_OF_MEMORY: neither is
+ *                 complete. INVALID_ARGUMENT: offsets is NULL, or hits with a hit_capacity;
+ *                 otherwise as kiwami_closest_hit.
+ * [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_multi_hit(const kiwami_scene* scene, const kiwami_ray* rays,
+                                          size_t ray_stride, size_t count, uint32_t max_hits,
+                                          kiwami_hit* hits, uint64_t hit_capacity,
+                                          uint64_t* offsets, const kiwami_query* query);
+
+/* Counts the hits of each ray: as many as kiwami_multi_hit finds with max_hits 0.
+ *   counts      receives count numbers, stride bytes apart (0: 4), at any address
+ * Otherwise as kiwami_closest_hit. [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_count_hits(const kiwami_scene* scene, const kiwami_ray* rays,
+                                           size_t ray_stride, uint32_t* counts, size_t stride,
+                                           size_t count, const kiwami_query* query);
+
+/* As kiwami_multi_hit and kiwami_count_hits, with the fields of rays and answers apart.
+ *   hits        fields with room for hit_capacity hits; NULL only with hit_capacity 0
+ *   errors      also INVALID_ARGUMENT: the data of an origin or a direction is NULL with count > 0
+ * [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_multi_hit_fields(const kiwami_scene* scene,
+                                                 const kiwami_ray_fields* rays, size_t count,
+                                                 uint32_t max_hits, const kiwami_hit_fields* hits,
+                                                 uint64_t hit_capacity, uint64_t* offsets,
+                                                 const kiwami_query* query);
+KIWAMI_API kiwami_result kiwami_count_hits_fields(const kiwami_scene* scene,
+                                                  const kiwami_ray_fields* rays,
+                                                  const kiwami_output_field* counts, size_t count,
+                                                  const kiwami_query* query);
+
 #ifdef __cplusplus
 }
 #endif

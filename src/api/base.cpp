@@ -59,6 +59,8 @@ const char* kiwami_result_name(kiwami_result result) {
       return "validation failed";
     case KIWAMI_ERROR_INTERNAL:
       return "internal error";
+    case KIWAMI_ERROR_CAPACITY:
+      return "capacity exceeded";
     default:
       return "unknown result";
   }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "api/check.h"
+#include "core/multi_hit.h"
 #include "core/trace.h"
 #include "math/float_environment.h"
 
@@ -121,6 +122,25 @@ void trace_array(const CommittedScene& committed, TraversalKernel kernel, const 
   trace(committed, kernel, batch, on_calling_thread);
 }
 
+/// Checks the arguments that multi-hit calls have of their own. hits is what the caller gave.
+void check_multi_hit(const void* hits, uint64_t hit_capacity, const uint64_t* offsets) {
+  check_not_null(offsets, "offsets");
+  if (!hits && hit_capacity != 0) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "hits is NULL with a hit_capacity of %llu, expected an array, or a hit_capacity of "
+                "0 to count hits alone",
+                static_cast<unsigned long long>(hit_capacity));
+  }
+}
+
+/// Throws where the caller's array was too small for all that there is.
+void check_capacity(const void* hits, uint64_t hit_capacity, uint64_t needed) {
+  if (needed <= hit_capacity || !hits) return;
+  throw Error(KIWAMI_ERROR_CAPACITY, "hit_capacity is %llu, expected at least %llu",
+              static_cast<unsigned long long>(hit_capacity),
+              static_cast<unsigned long long>(needed));
+}
+
 }  // namespace
 
 extern "C" {
@@ -202,6 +222,74 @@ kiwami_result kiwami_any_hit_fields(const kiwami_scene* scene, const kiwami_ray_
       }
     }
     trace_any_hit(committed, inputs, *occluded, count, on_calling_thread);
+  });
+}
+
+kiwami_result kiwami_multi_hit(const kiwami_scene* scene, const kiwami_ray* rays, size_t ray_stride,
+                               size_t count, uint32_t max_hits, kiwami_hit* hits,
+                               uint64_t hit_capacity, uint64_t* offsets,
+                               const kiwami_query* query) {
+  return guarded(device_of(scene), [&] {
+    const CommittedScene& committed = committed_of(scene);
+    const MultiHitRequest request{max_hits, hit_capacity, offsets, is_on_calling_thread(query)};
+    check_multi_hit(hits, hit_capacity, offsets);
+    const RayBatch batch{reinterpret_cast<const unsigned char*>(rays),
+                         ray_stride ? ray_stride : sizeof(kiwami_ray), nullptr, 0, count};
+    if (count != 0 && committed.validates_arguments()) {
+      check_array("rays", rays, batch.ray_stride, sizeof(kiwami_ray), count);
+    }
+    const uint64_t needed = trace_multi_hit(committed, batch, hits, request);
+    check_capacity(hits, hit_capacity, needed);
+  });
+}
+
+kiwami_result kiwami_count_hits(const kiwami_scene* scene, const kiwami_ray* rays,
+                                size_t ray_stride, uint32_t* counts, size_t stride, size_t count,
+                                const kiwami_query* query) {
+  return guarded(device_of(scene), [&] {
+    const CommittedScene& committed = committed_of(scene);
+    const RayBatch batch{
+        reinterpret_cast<const unsigned char*>(rays), ray_stride ? ray_stride : sizeof(kiwami_ray),
+        reinterpret_cast<unsigned char*>(counts), stride ? stride : sizeof(uint32_t), count};
+    trace_array(committed, committed.kernels().all_hits, batch, sizeof(uint32_t), "counts", query);
+  });
+}
+
+kiwami_result kiwami_multi_hit_fields(const kiwami_scene* scene, const kiwami_ray_fields* rays,
+                                      size_t count, uint32_t max_hits,
+                                      const kiwami_hit_fields* hits, uint64_t hit_capacity,
+                                      uint64_t* offsets, const kiwami_query* query) {
+  return guarded(device_of(scene), [&] {
+    const CommittedScene& committed = committed_of(scene);
+    const MultiHitRequest request{max_hits, hit_capacity, offsets, is_on_calling_thread(query)};
+    check_multi_hit(hits, hit_capacity, offsets);
+    const kiwami_ray_fields inputs = read_ray_fields(rays, count);
+    const kiwami_hit_fields outputs =
+        hits ? read_descriptor(hits, kMinimumStructSize, "hits", kNoHits) : kNoHits;
+    check_reserved("hits.reserved", outputs.reserved);
+    if (committed.validates_arguments()) {
+      if (count != 0) check_ray_fields(inputs, count);
+      if (hit_capacity != 0) check_hit_fields(outputs, static_cast<size_t>(hit_capacity));
+    }
+    const uint64_t needed = trace_multi_hit(committed, inputs, count, outputs, request);
+    check_capacity(hits, hit_capacity, needed);
+  });
+}
+
+kiwami_result kiwami_count_hits_fields(const kiwami_scene* scene, const kiwami_ray_fields* rays,
+                                       const kiwami_output_field* counts, size_t count,
+                                       const kiwami_query* query) {
+  return guarded(device_of(scene), [&] {
+    const CommittedScene& committed = committed_of(scene);
+    const bool on_calling_thread = is_on_calling_thread(query);
+    const kiwami_ray_fields inputs = read_ray_fields(rays, count);
+    check_not_null(counts, "counts");
+    if (count == 0) return;
+    if (committed.validates_arguments()) {
+      check_ray_fields(inputs, count);
+      check_output_field("counts", *counts, count);
+    }
+    trace_all_hits(committed, inputs, *counts, count, on_calling_thread);
   });
 }
 

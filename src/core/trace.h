@@ -10,6 +10,10 @@ namespace kiwami {
 /// Batches below this stay on the calling thread: waking others costs as much as tracing them.
 constexpr size_t kParallelCount = 4096;
 
+inline bool is_alone(const Parallel& parallel, size_t count, bool on_calling_thread) {
+  return count < kParallelCount || on_calling_thread || parallel.width() == 1;
+}
+
 /// Runs a kernel over a batch: on the device's threads if it is large, or on the calling thread.
 void trace(const CommittedScene& scene, TraversalKernel kernel, const RayBatch& batch,
            bool on_calling_thread);
@@ -17,6 +21,10 @@ void trace(const CommittedScene& scene, TraversalKernel kernel, const RayBatch& 
 /// The closest hits of rays whose fields lie apart.
 void trace_closest_hit(const CommittedScene& scene, const kiwami_ray_fields& rays,
                        const kiwami_hit_fields& hits, size_t count, bool on_calling_thread);
+
+/// How many hits rays whose fields lie apart have.
+void trace_all_hits(const CommittedScene& scene, const kiwami_ray_fields& rays,
+                    const kiwami_output_field& counts, size_t count, bool on_calling_thread);
 
 /// Whether rays whose fields lie apart have a hit. An occluded.stride of 0 is 1.
 void trace_any_hit(const CommittedScene& scene, const kiwami_ray_fields& rays,

@@ -34,6 +34,27 @@ using TraversalKernel = void (*)(const SceneView& scene, const RayBatch& batch);
 using CountingKernel = void (*)(const SceneView& scene, const RayBatch& batch,
                                 TraversalCounters& counters);
 
+/// What hits are sorted by, and where each is.
+struct HitKey {
+  float t;
+  uint32_t slot;
+};
+
+/// Room for the hits of a run of rays, one ray's after the other's.
+struct HitRoom {
+  kiwami_hit* hits;  ///< of which the first used are taken
+  HitKey* keys;      ///< as many, to work with
+  size_t capacity;
+  size_t used;
+  uint32_t* counts;  ///< receives each ray's number of hits
+};
+
+/// Adds the hits of each ray to the room, the nearest max_hits (0: all), sorted, each once. Returns
+/// how many rays were answered, from the first on: fewer than all where the next one's hits find no
+/// room. The answers of the batch are not used.
+using MultiHitKernel = size_t (*)(const SceneView& scene, const RayBatch& batch, uint32_t max_hits,
+                                  HitRoom& room);
+
 /// The kernels of one node width; all null where the ISA has none.
 struct TraversalKernels {
   TraversalKernel closest_hit;         ///< answers: kiwami_hit
@@ -41,6 +62,7 @@ struct TraversalKernels {
   TraversalKernel all_hits;            ///< answers: uint32_t, the number of accepted triangles
   CountingKernel closest_hit_counted;  ///< the same answers, and the counters
   CountingKernel any_hit_counted;
+  MultiHitKernel multi_hit = nullptr;
 };
 
 struct KernelTable {

@@ -11,6 +11,20 @@ TraversalKernels kernels_w4();
 TraversalKernels kernels_w8();
 TraversalKernels kernels_w16();
 
+MultiHitKernel multi_hit_w4();
+MultiHitKernel multi_hit_w8();
+MultiHitKernel multi_hit_w16();
+
+inline TraversalKernels joined(TraversalKernels kernels, MultiHitKernel multi_hit) {
+  kernels.multi_hit = multi_hit;
+  return kernels;
+}
+
+/// All kernels of one width.
+inline TraversalKernels all_kernels_w4() { return joined(kernels_w4(), multi_hit_w4()); }
+inline TraversalKernels all_kernels_w8() { return joined(kernels_w8(), multi_hit_w8()); }
+inline TraversalKernels all_kernels_w16() { return joined(kernels_w16(), multi_hit_w16()); }
+
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami
 

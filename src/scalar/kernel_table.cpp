@@ -3,6 +3,7 @@
 
 extern "C" void KIWAMI_KERNEL_TABLE_GETTER(kiwami::KernelTable* table) {
   using namespace kiwami;
-  *table = {KIWAMI_ISA_SCALAR,
-            {KIWAMI_ISA::kernels_w4(), KIWAMI_ISA::kernels_w8(), KIWAMI_ISA::kernels_w16()}};
+  *table = {
+      KIWAMI_ISA_SCALAR,
+      {KIWAMI_ISA::all_kernels_w4(), KIWAMI_ISA::all_kernels_w8(), KIWAMI_ISA::all_kernels_w16()}};
 }

@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "parity/committed_tree.h"
 #include "parity/kernel_check.h"
 #include "parity/kernel_tables.h"
+#include "parity/split_scene.h"
 #include "support/adversarial_scenes.h"
 #include "support/closed_meshes.h"
 #include "support/environment.h"
-#include "support/library.h"
 #include "support/plain_oracle.h"
 #include "support/random.h"
 #include "support/ray_generator.h"
@@ -21,47 +20,14 @@
 namespace kiwami_tests {
 namespace {
 
-/// Scenes that are cut as much as they can be, for each width.
-class SplitScene {
- public:
-  explicit SplitScene(const Scene& scene) : device_(make_device(KIWAMI_ISA_SCALAR, 1)) {
-    for (const uint32_t width : {4u, 8u, 16u}) {
-      BuildOptions options;
-      options.width = width;
-      options.validates = true;
-      options.parameters = {{KIWAMI_PARAMETER_BUILDER, KIWAMI_BUILDER_SPATIAL_SPLIT},
-                            {KIWAMI_PARAMETER_SPLIT_BUDGET, 4.0},
-                            {KIWAMI_PARAMETER_SPLIT_ALPHA, 0.0}};
-      scenes_[width / 8] = make_scene(device_.get(), scene, options);
-    }
+/// "" where all kernels answer as expected.
+std::string difference_of_all(const SplitScene& split, const Expected& expected) {
+  for (const NamedKernels& kernels : all_kernels()) {
+    const std::string found = difference(kernels, split.view(kernels.width), expected);
+    if (!found.empty()) return std::string(kernels.name) + ", " + found;
   }
-
-  const kiwami::SceneView& view(uint32_t width) const { return view_of(scenes_[width / 8].get()); }
-
-  kiwami_scene_info info(uint32_t width) const { return info_of(scenes_[width / 8].get()); }
-
-  uint64_t extra_references() const {
-    uint64_t extra = 0;
-    for (const SceneHandle& scene : scenes_) {
-      const kiwami_scene_info info = info_of(scene.get());
-      extra += info.reference_count - info.triangle_count;
-    }
-    return extra;
-  }
-
-  /// "" where all kernels answer as expected.
-  std::string difference_of_all(const Expected& expected) const {
-    for (const NamedKernels& kernels : all_kernels()) {
-      const std::string found = difference(kernels, view(kernels.width), expected);
-      if (!found.empty()) return std::string(kernels.name) + ", " + found;
-    }
-    return "";
-  }
-
- private:
-  DeviceHandle device_;
-  SceneHandle scenes_[3];
-};
+  return "";
+}
 
 /// The planes on which the boxes of the wide tree end, in the frame of the scene.
 std::vector<float> planes_of(const SplitScene& split, int axis) {
@@ -121,7 +87,7 @@ TEST(SplitTrees, AgreeWithThePlainLoopOnAdversarialScenes) {
     const SplitScene split(scene);
     extra += split.extra_references();
     const Expected expected = expected_of(PlainOracle(scene), scene, rays, Random(seed(), 500 + i));
-    EXPECT_EQ(split.difference_of_all(expected), "")
+    EXPECT_EQ(difference_of_all(split, expected), "")
         << "scene " << scene.name << ", KIWAMI_SEED=" << seed();
   }
   std::printf("%llu references beyond one a triangle\n", static_cast<unsigned long long>(extra));
@@ -137,12 +103,12 @@ TEST(SplitTrees, AgreeWithThePlainLoopOnClosedMeshesAndAtTheSidesOfBoxes) {
     extra += split.extra_references();
     const Expected expected =
         expected_of(oracle, scene, ray_budget(10000) / 7 + 1, Random(seed(), 600));
-    EXPECT_EQ(split.difference_of_all(expected), "")
+    EXPECT_EQ(difference_of_all(split, expected), "")
         << "scene " << scene.name << ", KIWAMI_SEED=" << seed();
     const size_t count = ray_budget(10000) / 7 + 1;
     const Expected at_planes =
         with_answers(oracle, rays_at_planes(scene, split, count, Random(seed(), 601)));
-    EXPECT_EQ(split.difference_of_all(at_planes), "")
+    EXPECT_EQ(difference_of_all(split, at_planes), "")
         << "at planes, scene " << scene.name << ", KIWAMI_SEED=" << seed();
   }
   EXPECT_GT(extra, 0u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/plain_oracle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -136,6 +137,19 @@ kiwami_hit missing_hit() {
   return hit;
 }
 
+kiwami_hit PlainOracle::hit_of(const Triangle& triangle, const Crossing& crossing) {
+  const Point first = triangle.b - triangle.a, second = triangle.c - triangle.a;
+  return {crossing.t,
+          crossing.u,
+          crossing.v,
+          first.y * second.z - first.z * second.y,
+          first.z * second.x - first.x * second.z,
+          first.x * second.y - first.y * second.x,
+          triangle.primitive_id,
+          triangle.geometry_id,
+          KIWAMI_INVALID_ID};
+}
+
 kiwami_hit PlainOracle::closest_hit(const kiwami_ray& ray) const {
   // Triangles come by rising (geometry, primitive): of equal distances the first is the least.
   const Triangle* closest = nullptr;
@@ -147,17 +161,19 @@ kiwami_hit PlainOracle::closest_hit(const kiwami_ray& ray) const {
     }
     return false;
   });
-  if (!closest) return missing_hit();
-  const Point first = closest->b - closest->a, second = closest->c - closest->a;
-  return {best.t,
-          best.u,
-          best.v,
-          first.y * second.z - first.z * second.y,
-          first.z * second.x - first.x * second.z,
-          first.x * second.y - first.y * second.x,
-          closest->primitive_id,
-          closest->geometry_id,
-          KIWAMI_INVALID_ID};
+  return closest ? hit_of(*closest, best) : missing_hit();
+}
+
+std::vector<kiwami_hit> PlainOracle::hits(const kiwami_ray& ray) const {
+  std::vector<kiwami_hit> found;
+  for_each_crossing(ray, [&](const Triangle& triangle, const Crossing& crossing) {
+    found.push_back(hit_of(triangle, crossing));
+    return false;
+  });
+  // Triangles come by rising (geometry, primitive): of equal distances their order stays.
+  std::stable_sort(found.begin(), found.end(),
+                   [](const kiwami_hit& a, const kiwami_hit& b) { return a.t < b.t; });
+  return found;
 }
 
 bool PlainOracle::any_hit(const kiwami_ray& ray) const {

@@ -24,6 +24,8 @@ class PlainOracle {
 
   kiwami_hit closest_hit(const kiwami_ray& ray) const;
   bool any_hit(const kiwami_ray& ray) const;
+  /// All hits, by (t, geometry, primitive).
+  std::vector<kiwami_hit> hits(const kiwami_ray& ray) const;
   /// The number of triangles that the ray meets.
   uint32_t all_hits(const kiwami_ray& ray) const;
 
@@ -37,6 +39,7 @@ class PlainOracle {
   struct Frame;
   struct Crossing;
 
+  static kiwami_hit hit_of(const Triangle& triangle, const Crossing& crossing);
   bool crosses(const Frame& frame, const kiwami_ray& ray, const Triangle& triangle,
                Crossing& crossing) const;
   /// Calls visit(triangle, crossing) for each triangle that the ray meets.
