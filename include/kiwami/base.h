@@ -60,8 +60,10 @@ enum {
   KIWAMI_ERROR_CALLBACK = -6,        /* a callback of the caller reported failure */
   KIWAMI_ERROR_VALIDATION = -7,      /* a tree breaks one of its invariants (validator calls) */
   KIWAMI_ERROR_INTERNAL = -8,        /* a defect of the library; please report it */
-  KIWAMI_ERROR_CAPACITY = -9         /* the caller's array is too small: it holds what fits, and the
+  KIWAMI_ERROR_CAPACITY = -9,        /* the caller's array is too small: it holds what fits, and the
                                       * call tells what it needs */
+  KIWAMI_ERROR_INVALID_FILE = -10,   /* a file is none of this library's, or is damaged */
+  KIWAMI_ERROR_IO = -11              /* the operating system could not read or write a file */
 };
 
 /* See device.h. */

@@ -10,6 +10,7 @@
 #include "device.h"
 #include "export.h"
 #include "geometry.h"
+#include "io.h"
 #include "scene.h"
 #include "trace.h"
 

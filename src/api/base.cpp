@@ -61,6 +61,10 @@ const char* kiwami_result_name(kiwami_result result) {
       return "internal error";
     case KIWAMI_ERROR_CAPACITY:
       return "capacity exceeded";
+    case KIWAMI_ERROR_INVALID_FILE:
+      return "invalid file";
+    case KIWAMI_ERROR_IO:
+      return "input or output failed";
     default:
       return "unknown result";
   }

@@ -54,6 +54,8 @@ class FlatVerifier {
     count_primitives();
     uint32_t next_child = 1;
     for (uint32_t i = 0; i < nodes_.size(); ++i) {
+      // What is nobody's child has a run of primitives that nobody has checked.
+      if (i == next_child) fail("node %u is the child of none", i);
       if (nodes_[i].child_count == 0) {
         check_leaf(i);
       } else {

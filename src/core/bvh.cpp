@@ -27,6 +27,10 @@ Bvh* Bvh::create(Device& device, const BvhPlan& plan) {
   return make_object<Bvh>(device.memory(), device, plan);
 }
 
+Bvh* Bvh::create(Device& device, SavedBvh saved) {
+  return make_object<Bvh>(device.memory(), device, std::move(saved));
+}
+
 void Bvh::destroy(Bvh* bvh) noexcept {
   const Reference<Device> device = bvh->device_;
   destroy_object(device->memory(), bvh);
@@ -40,6 +44,22 @@ Bvh::Bvh(Device& device, CommittedScene& scene)
   info_.skipped_count = scene.info().skipped_count;
   info_.build_seconds = scene.info().build_seconds;
   describe(scene.tree().width, scene.tree().leaf_width);
+}
+
+Bvh::Bvh(Device& device, SavedBvh saved)
+    : device_(device),
+      mesh_(std::move(saved.mesh)),
+      boxes_(std::move(saved.boxes)),
+      numbered_count_(boxes_.size()),
+      skipped_ids_(std::move(saved.skipped_ids)),
+      tree_(std::move(saved.tree)) {
+  if (mesh_.get()) {
+    mesh_view_ = mesh_->view(0, 0);
+    numbered_count_ = mesh_->triangle_count();
+  }
+  info_.skipped_count = skipped_ids_.size();
+  info_.build_seconds = saved.build_seconds;
+  describe(saved.width, saved.leaf_width);
 }
 
 void Bvh::describe(uint32_t width, uint32_t leaf_width) {

@@ -33,6 +33,17 @@ struct BvhPlan {
   SceneParameters parameters;
 };
 
+/// What a file holds of a tree that was built.
+struct SavedBvh {
+  uint32_t width;
+  uint32_t leaf_width;
+  double build_seconds;
+  FlatTree tree;
+  Array<uint32_t> skipped_ids;  ///< rising
+  Array<Bounds> boxes;          ///< of a tree over boxes; those that were skipped are empty
+  Reference<TriangleMesh> mesh;
+};
+
 /// What a tree costs, and what each node adds to that.
 struct BvhMeasures {
   kiwami_bvh_measures totals;
@@ -47,10 +58,13 @@ class Bvh : public Object<Bvh> {
   static Bvh* create(Device& device, CommittedScene& scene);
   /// Builds a tree. Throws Error.
   static Bvh* create(Device& device, const BvhPlan& plan);
+  /// One that was saved; nothing of it is checked. Throws Error(OUT_OF_MEMORY).
+  static Bvh* create(Device& device, SavedBvh saved);
   static void destroy(Bvh* bvh) noexcept;
 
   Bvh(Device& device, CommittedScene& scene);
   Bvh(Device& device, const BvhPlan& plan);
+  Bvh(Device& device, SavedBvh saved);
 
   Device& device() const { return *device_; }
   const kiwami_bvh_info& info() const { return info_; }
@@ -69,9 +83,14 @@ class Bvh : public Object<Bvh> {
   void validate() const;
 
   bool is_over_boxes() const { return !scene_.get() && !mesh_.get(); }
+  bool is_of_scene() const { return scene_.get() != nullptr; }
+  /// What a file holds of it.
+  TriangleSource source() const;
+  const Array<uint32_t>& primitive_ids() const { return tree_.primitive_ids; }
+  const Array<uint32_t>& skipped_ids() const { return skipped_ids_; }
+  const Array<Bounds>& boxes() const { return boxes_; }
 
  private:
-  TriangleSource source() const;
   Array<BuildPrimitive> collect() const;
   void build(Array<BuildPrimitive> primitives, const BvhPlan& plan);
   void note_skipped(const Array<BuildPrimitive>& primitives);

@@ -72,6 +72,23 @@ CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometrie
   info_.build_seconds = seconds.count();
 }
 
+CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
+                               SavedTree saved)
+    : device_(device),
+      image_(std::move(saved.image)),
+      memory_(device.memory().allocator()),
+      references_(memory_, geometries, count),
+      tree_(std::move(saved.tree)),
+      triangle_count_(static_cast<size_t>(saved.triangle_count)) {
+  number_triangles(geometries, count);
+  kernels_ = kernels_of(device.isa(), tree_.width);
+  show_tree(saved.bounds);
+  describe();
+  info_.total_bytes += tree_.memory.bytes();
+  info_.peak_build_bytes += tree_.memory.bytes();
+  info_.build_seconds = saved.build_seconds;
+}
+
 void CommittedScene::destroy(CommittedScene* scene) noexcept {
   const Reference<Device> device = scene->device_;
   destroy_object(device->memory(), scene);
@@ -135,7 +152,10 @@ void CommittedScene::build(const SceneParameters& parameters,
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
   optimize_wide_tree(tree_, source(), rays, parameters, memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
+  show_tree(bounds);
+}
 
+void CommittedScene::show_tree(const Bounds& bounds) {
   view_.tree = tree_.view;
   view_.ranges = ranges_.data();
   view_.range_count = static_cast<uint32_t>(ranges_.size());

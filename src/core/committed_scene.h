@@ -6,6 +6,7 @@
 #include "bvh/representative_rays.h"
 #include "bvh/triangle_source.h"
 #include "core/device.h"
+#include "core/file_image.h"
 #include "core/geometry.h"
 #include "core/memory.h"
 #include "core/object.h"
@@ -15,6 +16,15 @@
 
 namespace kiwami {
 
+/// What a file holds of a committed scene beside its geometries.
+struct SavedTree {
+  Reference<FileImage> image;  ///< where the tree's memory lies
+  WideTree tree;
+  uint64_t triangle_count;
+  Bounds bounds;
+  double build_seconds;
+};
+
 /// What a commit makes and the kernels read: the tree and the tables around it. Holds the
 /// geometries that it was built from, so that it outlives their detachment. Never changes.
 class CommittedScene : public Object<CommittedScene> {
@@ -23,6 +33,8 @@ class CommittedScene : public Object<CommittedScene> {
   /// these, or by sampled ones where there are none. Throws Error.
   CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
                  const SceneParameters& parameters, std::span<const RepresentativeRay> rays);
+  /// Of count geometries, whose tree was saved. Throws Error.
+  CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count, SavedTree saved);
   static void destroy(CommittedScene* scene) noexcept;
 
   /// For what only works on it, and is gone before it.
@@ -61,9 +73,11 @@ class CommittedScene : public Object<CommittedScene> {
   void number_triangles(const AttachedGeometry* geometries, size_t count);
   BinaryBvh build_binary(const SceneParameters& parameters);
   void build(const SceneParameters& parameters, std::span<const RepresentativeRay> rays);
+  void show_tree(const Bounds& bounds);
   void describe();
 
   Reference<Device> device_;
+  Reference<FileImage> image_;  ///< of a scene that was loaded
   // Its own byte count, which gives the exact peak of one build, whatever else the device does.
   mutable Memory memory_;
   TraversalKernels kernels_{};

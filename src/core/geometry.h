@@ -20,7 +20,7 @@ class Geometry : public Object<Geometry> {
   GeometryKind kind() const { return kind_; }
   /// A ray meets the geometry only where (ray.mask & mask()) != 0.
   uint32_t mask() const { return mask_; }
-  /// The bytes of the copied buffers; 0 for shared ones.
+  /// The bytes of copied buffers and of those in a file; 0 for shared ones.
   virtual size_t copied_bytes() const = 0;
 
  protected:

@@ -63,6 +63,13 @@ class Array {
       : memory_(&memory),
         data_(static_cast<T*>(memory.allocate(size * sizeof(T), kAlignment))),
         size_(size) {}
+  /// Over memory of others, which must outlive the array.
+  static Array borrow(T* data, size_t size) {
+    Array array;
+    array.data_ = data;
+    array.size_ = size;
+    return array;
+  }
   Array(Array&& other) noexcept { swap(other); }
   Array& operator=(Array&& other) noexcept {
     Array moved(std::move(other));
@@ -70,7 +77,7 @@ class Array {
     return *this;
   }
   ~Array() {
-    if (data_) memory_->deallocate(data_, capacity_bytes(), kAlignment);
+    if (memory_ && data_) memory_->deallocate(data_, capacity_bytes(), kAlignment);
   }
 
   T* data() { return data_; }
@@ -105,7 +112,7 @@ class Array {
     std::swap(size_, other.size_);
   }
 
-  Memory* memory_ = nullptr;
+  Memory* memory_ = nullptr;  ///< nullptr: nothing, or borrowed
   T* data_ = nullptr;
   size_t size_ = 0;
 };

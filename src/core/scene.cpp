@@ -65,6 +65,18 @@ Array<AttachedGeometry> Scene::attached_geometries() const {
   return attached;
 }
 
+void Scene::attach_as(uint32_t geometry_id, Geometry& geometry) {
+  while (geometries_.size() <= geometry_id) geometries_.push_back(nullptr);
+  geometries_[geometry_id] = &geometry;
+  geometry.retain();
+}
+
+void Scene::restore(SavedTree saved) {
+  const Array<AttachedGeometry> attached = attached_geometries();
+  committed_ = Reference<CommittedScene>::adopt(make_object<CommittedScene>(
+      device_->memory(), *device_, attached.data(), attached.size(), std::move(saved)));
+}
+
 void Scene::commit() {
   Memory& memory = device_->memory();
   const Array<AttachedGeometry> attached = attached_geometries();

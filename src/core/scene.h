@@ -20,6 +20,7 @@ class Scene : public Object<Scene> {
 
   Device& device() const { return *device_; }
   SceneParameters& parameters() { return parameters_; }
+  const SceneParameters& parameters() const { return parameters_; }
 
   /// For what goes by rays in the next commits; empty: rays are sampled.
   void set_representative_rays(Array<RepresentativeRay> rays) { rays_ = std::move(rays); }
@@ -29,8 +30,13 @@ class Scene : public Object<Scene> {
   /// Throws Error(INVALID_ARGUMENT) for a number that no geometry has.
   void detach(uint32_t geometry_id);
 
+  /// Attaches a geometry by a number that is free. Throws Error(OUT_OF_MEMORY).
+  void attach_as(uint32_t geometry_id, Geometry& geometry);
+
   /// Throws Error, and then keeps what was committed before.
   void commit();
+  /// Takes the place of a commit: a structure that was saved, of the attached geometries.
+  void restore(SavedTree saved);
   /// nullptr before the first commit.
   CommittedScene* committed() const { return committed_.get(); }
 

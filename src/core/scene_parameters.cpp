@@ -89,6 +89,12 @@ ParameterBounds parameter_bounds(uint32_t parameter) {
               parameter);
 }
 
+bool is_parameter(uint32_t parameter) {
+  return std::any_of(
+      std::begin(kBounds), std::end(kBounds),
+      [parameter](const NumberedBounds& known) { return known.parameter == parameter; });
+}
+
 const QualityMethods& quality_methods(uint32_t quality) {
   if (quality >= std::size(kQualities)) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "quality is %u, expected one of KIWAMI_QUALITY_*",

@@ -17,6 +17,9 @@ struct ParameterBounds {
 /// Throws Error(INVALID_ARGUMENT) for an unknown parameter.
 ParameterBounds parameter_bounds(uint32_t parameter);
 
+/// Whether it is one of KIWAMI_PARAMETER_*.
+bool is_parameter(uint32_t parameter);
+
 /// What a KIWAMI_QUALITY_* stands for.
 struct QualityMethods {
   uint32_t builder;
@@ -30,6 +33,9 @@ const QualityMethods& quality_methods(uint32_t quality);
 /// The values of all KIWAMI_PARAMETER_*, always within their bounds.
 class SceneParameters {
  public:
+  /// All numbers are below this.
+  static constexpr uint32_t kLimit = 64;
+
   SceneParameters();
 
   /// Throws Error(INVALID_ARGUMENT) for an unknown parameter or a value out of bounds.
@@ -44,9 +50,6 @@ class SceneParameters {
   uint32_t whole(uint32_t parameter) const { return static_cast<uint32_t>(values_[parameter]); }
 
  private:
-  /// All numbers are below this.
-  static constexpr uint32_t kLimit = 64;
-
   double values_[kLimit] = {};
   uint32_t optimizers_[KIWAMI_MAX_OPTIMIZERS];
   size_t optimizer_count_ = 0;

@@ -96,6 +96,18 @@ TriangleMesh::TriangleMesh(Device& device, const kiwami_triangle_mesh_desc& desc
   check_indices();
 }
 
+TriangleMesh::TriangleMesh(Device& device, FileImage& image, const TriangleMeshView& view,
+                           bool is_trusted)
+    : Geometry(device, GeometryKind::kTriangleMesh, view.mask), image_(image), view_(view) {
+  vertices_ = Array<unsigned char>::borrow(const_cast<unsigned char*>(view.vertices),
+                                           view.vertex_count * kElementSize);
+  if (view.indices) {
+    indices_ = Array<unsigned char>::borrow(const_cast<unsigned char*>(view.indices),
+                                            view.triangle_count * kElementSize);
+  }
+  if (!is_trusted) check_indices();
+}
+
 void TriangleMesh::copy_buffers() {
   vertices_ =
       packed_copy(view_.vertices, view_.vertex_stride, view_.vertex_count, kElementSize, device());

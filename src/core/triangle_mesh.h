@@ -2,17 +2,21 @@
 #pragma once
 
 #include "bvh/triangle_source.h"
+#include "core/file_image.h"
 #include "core/geometry.h"
 
 namespace kiwami {
 
-/// A triangle mesh: the caller's buffers, or tightly packed copies of them.
+/// A triangle mesh: the caller's buffers, tightly packed copies of them, or buffers in a file.
 class TriangleMesh final : public Geometry {
  public:
   /// Throws Error(INVALID_ARGUMENT, TOO_LARGE or OUT_OF_MEMORY).
   static TriangleMesh* create(Device& device, const kiwami_triangle_mesh_desc& desc);
 
   TriangleMesh(Device& device, const kiwami_triangle_mesh_desc& desc);
+  /// Over tightly packed buffers in a file, which it holds. Checks the indices unless they are
+  /// trusted.
+  TriangleMesh(Device& device, FileImage& image, const TriangleMeshView& view, bool is_trusted);
 
   uint32_t triangle_count() const { return view_.triangle_count; }
   size_t copied_bytes() const override { return vertices_.bytes() + indices_.bytes(); }
@@ -31,6 +35,7 @@ class TriangleMesh final : public Geometry {
   void copy_buffers();
   void check_indices() const;
 
+  Reference<FileImage> image_;
   Array<unsigned char> vertices_;
   Array<unsigned char> indices_;
   TriangleMeshView view_;

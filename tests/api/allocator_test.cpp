@@ -22,6 +22,30 @@ kiwami_result run_export(const kiwami_bvh* bvh) {
                            names.data(), primitives);
 }
 
+/// Saves to memory of 1 MiB and loads what was saved. Returns the first error.
+kiwami_result run_files(kiwami_device* device, const kiwami_scene* scene, const kiwami_bvh* bvh) {
+  std::vector<unsigned char> file(size_t{1} << 20);
+  kiwami_save_desc save;
+  kiwami_load_desc load;
+  kiwami_file_info info{};
+  kiwami_scene* loaded_scene = nullptr;
+  kiwami_bvh* loaded_bvh = nullptr;
+  info.struct_size = sizeof info;
+  kiwami_save_desc_init(&save, sizeof save);
+  kiwami_load_desc_init(&load, sizeof load);
+  load.data = save.data = file.data();
+  save.capacity = file.size();
+  kiwami_result result = kiwami_scene_save(scene, &save, &load.size);
+  if (result == KIWAMI_OK) result = kiwami_file_get_info(device, &load, &info);
+  if (result == KIWAMI_OK) result = kiwami_scene_load(device, &load, &loaded_scene);
+  if (result == KIWAMI_OK) result = kiwami_scene_commit(loaded_scene);
+  if (result == KIWAMI_OK) result = kiwami_bvh_save(bvh, &save, &load.size);
+  if (result == KIWAMI_OK) result = kiwami_bvh_load(device, &load, &loaded_bvh);
+  kiwami_scene_release(loaded_scene);
+  kiwami_bvh_release(loaded_bvh);
+  return result;
+}
+
 /// Looks at the tree of a scene, and builds and moves another one. Returns the first error.
 kiwami_result run_trees(kiwami_device* device, const kiwami_scene* scene, kiwami_geometry* mesh) {
   kiwami_bvh* of_scene = nullptr;
@@ -39,6 +63,7 @@ kiwami_result run_trees(kiwami_device* device, const kiwami_scene* scene, kiwami
   if (result == KIWAMI_OK) result = kiwami_bvh_refit(built, nullptr, 0, 0);
   if (result == KIWAMI_OK) result = kiwami_bvh_validate(built);
   if (result == KIWAMI_OK) result = run_export(built);
+  if (result == KIWAMI_OK) result = run_files(device, scene, built);
   kiwami_bvh_release(of_scene);
   kiwami_bvh_release(built);
   return result;

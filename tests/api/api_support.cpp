@@ -191,7 +191,10 @@ void* CountingAllocator::allocate(void* user, size_t size, size_t alignment) {
   const uintptr_t block = (free + alignment - 1) / alignment * alignment + self.misplacement;
   const BlockHeader header{start, size, alignment};
   std::memcpy(reinterpret_cast<void*>(block - sizeof header), &header, sizeof header);
-  self.live_bytes += size;
+  const size_t live = self.live_bytes += size;
+  size_t peak = self.peak_bytes;
+  while (peak < live && !self.peak_bytes.compare_exchange_weak(peak, live)) {
+  }
   ++self.live_blocks;
   return reinterpret_cast<void*>(block);
 }

@@ -77,6 +77,7 @@ class CountingAllocator {
   void install(kiwami_device_desc& desc);
 
   std::atomic<size_t> live_bytes{0};
+  std::atomic<size_t> peak_bytes{0};  ///< the highest live_bytes
   std::atomic<size_t> live_blocks{0};
   std::atomic<size_t> calls{0};
   std::atomic<size_t> mismatches{0};  ///< deallocations with another size or alignment

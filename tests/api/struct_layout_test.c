@@ -276,6 +276,43 @@ static void check_measures(void) {
   FIELD(kiwami_ray_visits, leaf_visits, 4);
 }
 
+static void check_files(void) {
+  if (sizeof(void*) == 8) {
+    SIZE(kiwami_save_desc, 48);
+    FIELD(kiwami_save_desc, struct_size, 0);
+    FIELD(kiwami_save_desc, flags, 4);
+    FIELD(kiwami_save_desc, path, 8);
+    FIELD(kiwami_save_desc, write, 16);
+    FIELD(kiwami_save_desc, write_user, 24);
+    FIELD(kiwami_save_desc, data, 32);
+    FIELD(kiwami_save_desc, capacity, 40);
+
+    SIZE(kiwami_load_desc, 56);
+    FIELD(kiwami_load_desc, struct_size, 0);
+    FIELD(kiwami_load_desc, flags, 4);
+    FIELD(kiwami_load_desc, path, 8);
+    FIELD(kiwami_load_desc, read, 16);
+    FIELD(kiwami_load_desc, read_user, 24);
+    FIELD(kiwami_load_desc, data, 32);
+    FIELD(kiwami_load_desc, size, 40);
+    FIELD(kiwami_load_desc, bvh_width, 48);
+    FIELD(kiwami_load_desc, reserved, 52);
+  }
+
+  SIZE(kiwami_file_info, 56);
+  FIELD(kiwami_file_info, struct_size, 0);
+  FIELD(kiwami_file_info, kind, 4);
+  FIELD(kiwami_file_info, fit, 8);
+  FIELD(kiwami_file_info, format_version, 12);
+  FIELD(kiwami_file_info, library_version, 16);
+  FIELD(kiwami_file_info, bvh_width, 20);
+  FIELD(kiwami_file_info, section_count, 24);
+  FIELD(kiwami_file_info, reserved, 28);
+  FIELD(kiwami_file_info, file_bytes, 32);
+  FIELD(kiwami_file_info, triangle_count, 40);
+  FIELD(kiwami_file_info, node_count, 48);
+}
+
 static void check_numbers(void) {
   expect("KIWAMI_ERROR_INVALID_ARGUMENT", (size_t)-KIWAMI_ERROR_INVALID_ARGUMENT, 1);
   expect("KIWAMI_ERROR_INVALID_STATE", (size_t)-KIWAMI_ERROR_INVALID_STATE, 2);
@@ -286,6 +323,11 @@ static void check_numbers(void) {
   expect("KIWAMI_ERROR_VALIDATION", (size_t)-KIWAMI_ERROR_VALIDATION, 7);
   expect("KIWAMI_ERROR_INTERNAL", (size_t)-KIWAMI_ERROR_INTERNAL, 8);
   expect("KIWAMI_ERROR_CAPACITY", (size_t)-KIWAMI_ERROR_CAPACITY, 9);
+  expect("KIWAMI_ERROR_INVALID_FILE", (size_t)-KIWAMI_ERROR_INVALID_FILE, 10);
+  expect("KIWAMI_ERROR_IO", (size_t)-KIWAMI_ERROR_IO, 11);
+  expect("KIWAMI_LOAD_TRUSTED", KIWAMI_LOAD_TRUSTED, 2);
+  expect("KIWAMI_FILE_BVH", KIWAMI_FILE_BVH, 2);
+  expect("KIWAMI_FIT_NONE", KIWAMI_FIT_NONE, 2);
   expect("KIWAMI_ISA_AVX512", KIWAMI_ISA_AVX512, 4);
   expect("KIWAMI_PARAMETER_BVH_WIDTH", KIWAMI_PARAMETER_BVH_WIDTH, 1);
   expect("KIWAMI_PARAMETER_MERGE_LEAVES", KIWAMI_PARAMETER_MERGE_LEAVES, 2);
@@ -318,6 +360,7 @@ int main(void) {
   check_bvh();
   check_measures();
   check_exported_nodes();
+  check_files();
   check_numbers();
   return failures != 0;
 }
