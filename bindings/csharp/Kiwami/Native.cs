@@ -1,0 +1,671 @@
+// SPDX-License-Identifier: Apache-2.0
+// The C interface for P/Invoke. Generated from the headers by
+// bindings/schema/generate.py; do not edit.
+#pragma warning disable 649
+using System;
+using System.Runtime.InteropServices;
+
+namespace Kiwami.Interop {
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate void kiwami_parallel_task(IntPtr task_data, UIntPtr index);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate int kiwami_parallel_runner(IntPtr user, UIntPtr count, IntPtr task, IntPtr task_data);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate IntPtr kiwami_allocate(IntPtr user, UIntPtr size, UIntPtr alignment);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate void kiwami_deallocate(IntPtr user, IntPtr memory, UIntPtr size, UIntPtr alignment);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate void kiwami_log(IntPtr user, int severity, IntPtr sentence);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate int kiwami_write(IntPtr user, IntPtr data, UIntPtr size);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate long kiwami_read(IntPtr user, IntPtr data, UIntPtr size);
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_device_desc {
+  public uint struct_size;
+  public uint isa;
+  public uint thread_count;
+  public uint flags;
+  public IntPtr runner;
+  public IntPtr runner_user;
+  public uint runner_width;
+  public uint reserved;
+  public IntPtr allocate;
+  public IntPtr deallocate;
+  public IntPtr allocator_user;
+  public IntPtr log;
+  public IntPtr log_user;
+  public const int Size = 80;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_device_info {
+  public uint struct_size;
+  public uint isa;
+  public uint isa_available;
+  public uint isa_built;
+  public uint native_widths;
+  public uint default_bvh_width;
+  public uint thread_count;
+  public uint reserved;
+  public const int Size = 32;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_triangle_mesh_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr vertices;
+  public ulong vertex_offset;
+  public ulong vertex_stride;
+  public ulong vertex_count;
+  public IntPtr indices;
+  public ulong index_offset;
+  public ulong index_stride;
+  public ulong triangle_count;
+  public uint mask;
+  public uint reserved;
+  public const int Size = 80;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_scene_info {
+  public uint struct_size;
+  public uint bvh_width;
+  public uint leaf_width;
+  public uint bvh_depth;
+  public ulong triangle_count;
+  public ulong skipped_count;
+  public ulong node_count;
+  public ulong leaf_block_count;
+  public ulong node_bytes;
+  public ulong leaf_bytes;
+  public ulong total_bytes;
+  public ulong peak_build_bytes;
+  public double node_fill;
+  public double leaf_fill;
+  public double sah_cost;
+  public double build_seconds;
+  public fixed float bounds_min[3];
+  public fixed float bounds_max[3];
+  public ulong reference_count;
+  public const int Size = 144;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_ray {
+  public float origin_x;
+  public float origin_y;
+  public float origin_z;
+  public float tmin;
+  public float direction_x;
+  public float direction_y;
+  public float direction_z;
+  public float tmax;
+  public float time;
+  public uint mask;
+  public uint flags;
+  public uint id;
+  public const int Size = 48;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_hit {
+  public float t;
+  public float u;
+  public float v;
+  public float normal_x;
+  public float normal_y;
+  public float normal_z;
+  public uint primitive_id;
+  public uint geometry_id;
+  public uint instance_id;
+  public const int Size = 36;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_input_field {
+  public IntPtr data;
+  public ulong stride;
+  public const int Size = 16;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_output_field {
+  public IntPtr data;
+  public ulong stride;
+  public const int Size = 16;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_ray_fields {
+  public uint struct_size;
+  public uint reserved;
+  public kiwami_input_field origin_x;
+  public kiwami_input_field origin_y;
+  public kiwami_input_field origin_z;
+  public kiwami_input_field direction_x;
+  public kiwami_input_field direction_y;
+  public kiwami_input_field direction_z;
+  public kiwami_input_field tmin;
+  public kiwami_input_field tmax;
+  public kiwami_input_field time;
+  public kiwami_input_field mask;
+  public kiwami_input_field flags;
+  public const int Size = 184;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_hit_fields {
+  public uint struct_size;
+  public uint reserved;
+  public kiwami_output_field t;
+  public kiwami_output_field u;
+  public kiwami_output_field v;
+  public kiwami_output_field normal_x;
+  public kiwami_output_field normal_y;
+  public kiwami_output_field normal_z;
+  public kiwami_output_field primitive_id;
+  public kiwami_output_field geometry_id;
+  public kiwami_output_field instance_id;
+  public const int Size = 152;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_query {
+  public uint struct_size;
+  public uint flags;
+  public const int Size = 8;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_bvh_node {
+  public fixed float lower[3];
+  public fixed float upper[3];
+  public uint parent;
+  public uint depth;
+  public uint first_child;
+  public uint child_count;
+  public uint first_primitive;
+  public uint primitive_count;
+  public uint storage_index;
+  public uint storage_mask;
+  public const int Size = 56;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_bvh_primitive {
+  public uint geometry_id;
+  public uint primitive_id;
+  public const int Size = 8;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_bvh_info {
+  public uint struct_size;
+  public uint width;
+  public uint leaf_width;
+  public uint depth;
+  public uint node_count;
+  public uint leaf_count;
+  public uint primitive_count;
+  public uint reserved;
+  public ulong bytes;
+  public ulong skipped_count;
+  public double build_seconds;
+  public const int Size = 56;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_parameter_value {
+  public uint parameter;
+  public uint reserved;
+  public double value;
+  public const int Size = 16;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_bvh_desc {
+  public uint struct_size;
+  public uint width;
+  public IntPtr boxes;
+  public ulong box_stride;
+  public ulong box_count;
+  public IntPtr geometry;
+  public IntPtr parameters;
+  public ulong parameter_count;
+  public IntPtr optimizers;
+  public ulong optimizer_count;
+  public const int Size = 72;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_bvh_measure_desc {
+  public uint struct_size;
+  public uint flags;
+  public double node_cost;
+  public double leaf_cost;
+  public uint block_size;
+  public uint reserved;
+  public const int Size = 32;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_bvh_measures {
+  public uint struct_size;
+  public uint reserved;
+  public double sah;
+  public double epo;
+  public double node_area;
+  public double leaf_area;
+  public double surface_area;
+  public const int Size = 48;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_bvh_node_measures {
+  public double area;
+  public double sah;
+  public double epo;
+  public const int Size = 24;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_visits {
+  public uint struct_size;
+  public uint reserved;
+  public ulong ray_count;
+  public ulong hit_count;
+  public ulong node_visits;
+  public ulong leaf_visits;
+  public double leaf_count_variability;
+  public const int Size = 48;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_ray_visits {
+  public uint node_visits;
+  public uint leaf_visits;
+  public const int Size = 8;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_binary_node {
+  public fixed float lower[3];
+  public uint first;
+  public fixed float upper[3];
+  public uint count;
+  public const int Size = 32;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_wide4_node {
+  public fixed float lower_x[4];
+  public fixed float lower_y[4];
+  public fixed float lower_z[4];
+  public fixed float upper_x[4];
+  public fixed float upper_y[4];
+  public fixed float upper_z[4];
+  public fixed uint child[4];
+  public fixed uint count[4];
+  public const int Size = 128;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_wide8_node {
+  public fixed float lower_x[8];
+  public fixed float lower_y[8];
+  public fixed float lower_z[8];
+  public fixed float upper_x[8];
+  public fixed float upper_y[8];
+  public fixed float upper_z[8];
+  public fixed uint child[8];
+  public fixed uint count[8];
+  public const int Size = 256;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_compressed8_node {
+  public fixed float origin[3];
+  public fixed byte exponent[3];
+  public byte inner_mask;
+  public uint child_base;
+  public uint primitive_base;
+  public fixed byte meta[8];
+  public fixed byte lower_x[8];
+  public fixed byte lower_y[8];
+  public fixed byte lower_z[8];
+  public fixed byte upper_x[8];
+  public fixed byte upper_y[8];
+  public fixed byte upper_z[8];
+  public const int Size = 80;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_save_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr path;
+  public IntPtr write;
+  public IntPtr write_user;
+  public IntPtr data;
+  public ulong capacity;
+  public const int Size = 48;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_load_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr path;
+  public IntPtr read;
+  public IntPtr read_user;
+  public IntPtr data;
+  public ulong size;
+  public uint bvh_width;
+  public uint reserved;
+  public const int Size = 56;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_file_info {
+  public uint struct_size;
+  public uint kind;
+  public uint fit;
+  public uint format_version;
+  public uint library_version;
+  public uint bvh_width;
+  public uint section_count;
+  public uint reserved;
+  public ulong file_bytes;
+  public ulong triangle_count;
+  public ulong node_count;
+  public const int Size = 56;
+}
+
+internal static class Native {
+  const string Library = "kiwami";
+
+  public const uint KIWAMI_ABI_VERSION = 0;
+  public const uint KIWAMI_FILE_FORMAT_VERSION = 1;
+  public const uint KIWAMI_INVALID_ID = 4294967295;
+  public const float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
+  public const uint KIWAMI_VERSION_MAJOR = 0;
+  public const uint KIWAMI_VERSION_MINOR = 1;
+  public const uint KIWAMI_VERSION_PATCH = 0;
+  public const int KIWAMI_OK = 0;
+  public const int KIWAMI_ERROR_INVALID_ARGUMENT = -1;
+  public const int KIWAMI_ERROR_INVALID_STATE = -2;
+  public const int KIWAMI_ERROR_OUT_OF_MEMORY = -3;
+  public const int KIWAMI_ERROR_UNSUPPORTED_ISA = -4;
+  public const int KIWAMI_ERROR_TOO_LARGE = -5;
+  public const int KIWAMI_ERROR_CALLBACK = -6;
+  public const int KIWAMI_ERROR_VALIDATION = -7;
+  public const int KIWAMI_ERROR_INTERNAL = -8;
+  public const int KIWAMI_ERROR_CAPACITY = -9;
+  public const int KIWAMI_ERROR_INVALID_FILE = -10;
+  public const int KIWAMI_ERROR_IO = -11;
+  public const uint KIWAMI_ISA_AUTO = 0;
+  public const uint KIWAMI_ISA_SCALAR = 1;
+  public const uint KIWAMI_ISA_SSE = 2;
+  public const uint KIWAMI_ISA_AVX2 = 3;
+  public const uint KIWAMI_ISA_AVX512 = 4;
+  public const uint KIWAMI_DEVICE_VALIDATE = 1;
+  public const uint KIWAMI_MESH_SHARE_BUFFERS = 1;
+  public const uint KIWAMI_PARAMETER_BVH_WIDTH = 1;
+  public const uint KIWAMI_PARAMETER_MERGE_LEAVES = 2;
+  public const uint KIWAMI_PARAMETER_MERGE_RING = 3;
+  public const uint KIWAMI_PARAMETER_BIN_COUNT = 4;
+  public const uint KIWAMI_PARAMETER_MAX_LEAF_SIZE = 5;
+  public const uint KIWAMI_PARAMETER_NODE_COST = 6;
+  public const uint KIWAMI_PARAMETER_LEAF_COST = 7;
+  public const uint KIWAMI_PARAMETER_VALIDATE_BUILD = 8;
+  public const uint KIWAMI_PARAMETER_CONTRACTION = 9;
+  public const uint KIWAMI_PARAMETER_BUILDER = 10;
+  public const uint KIWAMI_PARAMETER_SPLIT_BUDGET = 11;
+  public const uint KIWAMI_PARAMETER_SPLIT_ALPHA = 12;
+  public const uint KIWAMI_PARAMETER_BIN_HALVING = 13;
+  public const uint KIWAMI_PARAMETER_REASSIGN = 14;
+  public const uint KIWAMI_PARAMETER_AAC_QUALITY = 17;
+  public const uint KIWAMI_PARAMETER_CURVE_CODE = 18;
+  public const uint KIWAMI_PARAMETER_LBVH_DELTA = 19;
+  public const uint KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20;
+  public const uint KIWAMI_PARAMETER_QUALITY = 30;
+  public const uint KIWAMI_STAGE_BUILDER = 1;
+  public const uint KIWAMI_STAGE_OPTIMIZER = 2;
+  public const uint KIWAMI_STAGE_CONTRACTION = 3;
+  public const uint KIWAMI_QUALITY_BALANCED = 0;
+  public const uint KIWAMI_QUALITY_FAST = 1;
+  public const uint KIWAMI_QUALITY_BEST = 2;
+  public const uint KIWAMI_BUILDER_BINNED_SAH = 0;
+  public const uint KIWAMI_BUILDER_LBVH = 1;
+  public const uint KIWAMI_BUILDER_PLOC = 2;
+  public const uint KIWAMI_BUILDER_SWEEP_SAH = 3;
+  public const uint KIWAMI_BUILDER_SPATIAL_SPLIT = 4;
+  public const uint KIWAMI_BUILDER_AGGLOMERATIVE = 5;
+  public const uint KIWAMI_BUILDER_AAC = 6;
+  public const uint KIWAMI_BUILDER_MINI_TREE = 7;
+  public const uint KIWAMI_BUILDER_OIBVH = 8;
+  public const uint KIWAMI_BUILDER_STR = 10;
+  public const uint KIWAMI_BUILDER_TRBVH = 11;
+  public const uint KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1;
+  public const uint KIWAMI_OPTIMIZER_ROTATION = 2;
+  public const uint KIWAMI_OPTIMIZER_TREELET = 3;
+  public const uint KIWAMI_OPTIMIZER_AGGLOMERATIVE_TREELET = 4;
+  public const uint KIWAMI_OPTIMIZER_REINSERTION = 5;
+  public const uint KIWAMI_OPTIMIZER_REORDER_SATO = 6;
+  public const uint KIWAMI_OPTIMIZER_REORDER_NARY = 7;
+  public const uint KIWAMI_CONTRACTION_SURFACE_AREA = 0;
+  public const uint KIWAMI_CONTRACTION_OPTIMAL = 1;
+  public const uint KIWAMI_CONTRACTION_RAY_DISTRIBUTION = 2;
+  public const uint KIWAMI_MAX_OPTIMIZERS = 8;
+  public const uint KIWAMI_RAY_CULL_BACK_FACES = 1;
+  public const uint KIWAMI_RAY_CULL_FRONT_FACES = 2;
+  public const uint KIWAMI_QUERY_CALLING_THREAD = 1;
+  public const uint KIWAMI_MEASURE_WITHOUT_EPO = 1;
+  public const uint KIWAMI_COUNT_CLOSEST_HIT = 0;
+  public const uint KIWAMI_COUNT_ANY_HIT = 1;
+  public const uint KIWAMI_EXPORT_BINARY = 1;
+  public const uint KIWAMI_EXPORT_WIDE4 = 2;
+  public const uint KIWAMI_EXPORT_WIDE8 = 3;
+  public const uint KIWAMI_EXPORT_COMPRESSED8 = 4;
+  public const uint KIWAMI_LOAD_MAP = 1;
+  public const uint KIWAMI_LOAD_TRUSTED = 2;
+  public const uint KIWAMI_FILE_SCENE = 1;
+  public const uint KIWAMI_FILE_BVH = 2;
+  public const uint KIWAMI_FIT_NATIVE = 0;
+  public const uint KIWAMI_FIT_SCALAR = 1;
+  public const uint KIWAMI_FIT_NONE = 2;
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern uint kiwami_version();
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern uint kiwami_abi_version();
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern IntPtr kiwami_result_name(int result);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern UIntPtr kiwami_last_error(IntPtr device, IntPtr text, UIntPtr capacity);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_device_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_device_create(IntPtr desc, IntPtr device);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_device_retain(IntPtr device);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_device_release(IntPtr device);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_device_get_info(IntPtr device, IntPtr info);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern IntPtr kiwami_isa_name(uint isa);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_triangle_mesh_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_triangle_mesh_create(IntPtr device, IntPtr desc, IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_geometry_retain(IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_geometry_release(IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_create(IntPtr device, IntPtr scene);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_scene_retain(IntPtr scene);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_scene_release(IntPtr scene);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_attach(IntPtr scene, IntPtr geometry, IntPtr geometry_id);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_detach(IntPtr scene, uint geometry_id);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_set_parameter(IntPtr scene, uint parameter, double value);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_parameter_bounds(uint parameter, IntPtr lowest, IntPtr highest, IntPtr preset);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_set_representative_rays(IntPtr scene, IntPtr rays, UIntPtr stride, UIntPtr count);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_set_optimizers(IntPtr scene, IntPtr methods, UIntPtr count);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_quality_methods(uint quality, IntPtr builder, IntPtr optimizers, IntPtr optimizer_count, IntPtr contraction);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern IntPtr kiwami_method_name(uint stage, uint method);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_commit(IntPtr scene);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_get_info(IntPtr scene, IntPtr info);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_validate(IntPtr scene);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_ray_fields_init(IntPtr rays, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_hit_fields_init(IntPtr hits, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_query_init(IntPtr query, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_closest_hit(IntPtr scene, IntPtr rays, UIntPtr ray_stride, IntPtr hits, UIntPtr hit_stride, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_any_hit(IntPtr scene, IntPtr rays, UIntPtr ray_stride, IntPtr occluded, UIntPtr stride, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_closest_hit_fields(IntPtr scene, IntPtr rays, IntPtr hits, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_any_hit_fields(IntPtr scene, IntPtr rays, IntPtr occluded, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_multi_hit(IntPtr scene, IntPtr rays, UIntPtr ray_stride, UIntPtr count, uint max_hits, IntPtr hits, ulong hit_capacity, IntPtr offsets, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_count_hits(IntPtr scene, IntPtr rays, UIntPtr ray_stride, IntPtr counts, UIntPtr stride, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_multi_hit_fields(IntPtr scene, IntPtr rays, UIntPtr count, uint max_hits, IntPtr hits, ulong hit_capacity, IntPtr offsets, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_count_hits_fields(IntPtr scene, IntPtr rays, IntPtr counts, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_get_bvh(IntPtr scene, IntPtr bvh);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_build(IntPtr device, IntPtr desc, IntPtr bvh);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_refit(IntPtr bvh, IntPtr boxes, UIntPtr stride, UIntPtr count);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_validate(IntPtr bvh);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_bvh_retain(IntPtr bvh);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_bvh_release(IntPtr bvh);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_get_info(IntPtr bvh, IntPtr info);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_get_nodes(IntPtr bvh, UIntPtr first, UIntPtr count, IntPtr nodes, UIntPtr stride);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_get_primitives(IntPtr bvh, UIntPtr first, UIntPtr count, IntPtr primitives, UIntPtr stride);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_measure_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_measure(IntPtr bvh, IntPtr desc, IntPtr measures, IntPtr nodes, UIntPtr stride);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_count_visits(IntPtr scene, IntPtr rays, UIntPtr ray_stride, UIntPtr count, uint query, IntPtr visits, IntPtr each, UIntPtr each_stride);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_export_counts(IntPtr bvh, uint format, IntPtr node_count, IntPtr primitive_count);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_export(IntPtr bvh, uint format, IntPtr nodes, UIntPtr node_bytes, IntPtr primitives, UIntPtr primitive_count);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_save_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_load_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_save(IntPtr scene, IntPtr desc, IntPtr bytes);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_load(IntPtr device, IntPtr desc, IntPtr scene);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_save(IntPtr bvh, IntPtr desc, IntPtr bytes);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_load(IntPtr device, IntPtr desc, IntPtr bvh);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_file_get_info(IntPtr device, IntPtr desc, IntPtr info);
+}
+}

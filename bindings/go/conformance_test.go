@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+
+package kiwami
+
+import (
+	"errors"
+	"fmt"
+	"math"
+	"os"
+	"strconv"
+	"strings"
+	"sync"
+	"testing"
+)
+
+// words reads the conformance vectors: answers that every binding must give, to the bit.
+type words struct {
+	t    *testing.T
+	text []string
+}
+
+func readVectors(t *testing.T) string {
+	text, err := os.ReadFile("../conformance/vectors.txt")
+	if err != nil {
+		t.Fatal(err)
+	}
+	return string(text)
+}
+
+func (w *words) word() string {
+	if len(w.text) == 0 {
+		w.t.Fatal("the vectors end too soon")
+	}
+	first := w.text[0]
+	w.text = w.text[1:]
+	return first
+}
+
+func (w *words) number() uint64 {
+	value, err := strconv.ParseUint(w.word(), 10, 64)
+	if err != nil {
+		w.t.Fatal(err)
+	}
+	return value
+}
+
+func (w *words) int() uint32         { return uint32(w.number()) }
+func (w *words) float() float32      { return math.Float32frombits(w.int()) }
+func (w *words) floats() [3]float32  { return [3]float32{w.float(), w.float(), w.float()} }
+func (w *words) numbers() [3]uint32  { return [3]uint32{w.int(), w.int(), w.int()} }
+func (w *words) expect(words string) { w.equal(w.word(), words) }
+
+func (w *words) equal(actual, expected any) {
+	w.t.Helper()
+	if actual != expected {
+		w.t.Fatalf("%v, expected %v", actual, expected)
+	}
+}
+
+func (w *words) ray() Ray {
+	return Ray{w.floats(), w.float(), w.floats(), w.float(), w.float(), w.int(), w.int(), w.int()}
+}
+
+// hit reads bits: NaN and -0 count too.
+func (w *words) hit() (bits [9]uint32) {
+	for i := range bits {
+		bits[i] = w.int()
+	}
+	return
+}
+
+func bitsOf(h Hit) [9]uint32 {
+	float := math.Float32bits
+	return [9]uint32{float(h.T), float(h.U), float(h.V), float(h.Normal[0]), float(h.Normal[1]),
+		float(h.Normal[2]), h.PrimitiveID, h.GeometryID, h.InstanceID}
+}
+
+func (w *words) checkMultiHit(scene *Scene, rays []Ray) {
+	maxHits, total := w.int(), w.number()
+	found, err := scene.MultiHit(rays, maxHits)
+	w.equal(err, nil)
+	for _, offset := range found.Offsets {
+		w.equal(offset, w.number())
+	}
+	w.equal(uint64(len(found.Hits)), total)
+	for _, hit := range found.Hits {
+		w.equal(bitsOf(hit), w.hit())
+	}
+	counts, err := scene.CountHits(rays)
+	w.equal(err, nil)
+	for i, count := range counts {
+		if maxHits != 0 && count > maxHits {
+			count = maxHits
+		}
+		w.equal(uint32(len(found.Of(i))), count)
+	}
+}
+
+func (w *words) checkScene(device *Device) int {
+	scene, err := NewScene(device)
+	w.equal(err, nil)
+	defer scene.Close()
+	w.word()
+	word := w.word()
+	for ; word == "mesh"; word = w.word() {
+		mask := w.int()
+		vertices, triangles := make([][3]float32, w.int()), make([][3]uint32, w.int())
+		for i := range vertices {
+			vertices[i] = w.floats()
+		}
+		for i := range triangles {
+			triangles[i] = w.numbers()
+		}
+		_, err := scene.AddMesh(vertices, triangles, mask)
+		w.equal(err, nil)
+	}
+	w.equal(word, "rays")
+	rays := make([]Ray, w.int())
+	for i := range rays {
+		rays[i] = w.ray()
+	}
+	w.equal(scene.Commit(), nil)
+	w.expect("closest_hit")
+	hits, err := scene.ClosestHit(rays)
+	w.equal(err, nil)
+	for _, hit := range hits {
+		w.equal(bitsOf(hit), w.hit())
+	}
+	w.expect("any_hit")
+	occluded, err := scene.AnyHit(rays)
+	w.equal(err, nil)
+	for _, each := range occluded {
+		w.equal(each, w.int() == 1)
+	}
+	for word = w.word(); word == "multi_hit"; word = w.word() {
+		w.checkMultiHit(scene, rays)
+	}
+	w.equal(word, "end")
+	return len(rays)
+}
+
+func TestAnswersAreTheSameToTheBit(t *testing.T) {
+	for _, isa := range []ISA{ISAAuto, ISAScalar} {
+		device, err := NewDevice(&DeviceOptions{ISA: isa, Validate: true})
+		if err != nil {
+			t.Fatal(err)
+		}
+		w := &words{t, strings.Fields(readVectors(t))}
+		w.expect("kiwami-conformance")
+		w.expect("1")
+		compared := 0
+		for w.word() == "scene" {
+			compared += w.checkScene(device)
+		}
+		if compared < 100 {
+			t.Fatalf("only %d rays were compared", compared)
+		}
+		device.Close()
+		device.Close()
+	}
+}
+
+func TestErrorsAreTheSame(t *testing.T) {
+	scene, _ := NewScene(nil)
+	defer scene.Close()
+	corners := [][3]float32{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}
+	_, badIndex := scene.AddMesh(corners, [][3]uint32{{0, 1, 3}}, AllMasks)
+	_, notCommitted := scene.ClosestHit(make([]Ray, 1))
+	found := map[string]error{
+		"index_beyond_vertices":   badIndex,
+		"unknown_geometry":        scene.Remove(5),
+		"parameter_out_of_bounds": scene.SetParameter(4, 1000),
+		"not_committed":           notCommitted,
+	}
+	for _, line := range strings.Split(readVectors(t), "\n") {
+		parts := strings.SplitN(line, " ", 4)
+		if parts[0] != "error" {
+			continue
+		}
+		var e *Error
+		if !errors.As(found[parts[1]], &e) {
+			t.Fatalf("%s: no error", parts[1])
+		}
+		if fmt.Sprint(e.Result) != parts[2] || e.Error() != parts[3] {
+			t.Errorf("%s: %d %s, expected %s %s", parts[1], e.Result, e, parts[2], parts[3])
+		}
+		delete(found, parts[1])
+	}
+	if len(found) != 0 {
+		t.Errorf("the vectors lack %v", found)
+	}
+}
+
+func TestAClosedSceneIsAnError(t *testing.T) {
+	scene, _ := NewScene(nil)
+	scene.Close()
+	scene.Close()
+	if err := scene.Commit(); err == nil {
+		t.Error("a closed scene was committed")
+	}
+	if _, err := scene.ClosestHit(make([]Ray, 1)); err == nil {
+		t.Error("a closed scene was traced")
+	}
+}
+
+func TestASceneIsTracedByManyGoroutines(t *testing.T) {
+	scene, _ := NewScene(nil)
+	scene.AddMesh([][3]float32{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, [][3]uint32{{0, 1, 2}}, AllMasks)
+	if err := scene.Commit(); err != nil {
+		t.Fatal(err)
+	}
+	rays := make([]Ray, 100)
+	for i := range rays {
+		rays[i] = NewRay([3]float32{float32(i) / 50, 0.1, -1}, [3]float32{0, 0, 1})
+	}
+	expected, _ := scene.ClosestHit(rays)
+	var group sync.WaitGroup
+	for i := 0; i < 4; i++ {
+		group.Add(1)
+		go func() {
+			defer group.Done()
+			hits, err := scene.ClosestHit(rays)
+			for i := range hits {
+				if err != nil || hits[i] != expected[i] {
+					t.Errorf("ray %d: %v, expected %v (%v)", i, hits[i], expected[i], err)
+				}
+			}
+		}()
+	}
+	group.Wait()
+}
+
+func ExampleScene() {
+	scene, _ := NewScene(nil)
+	defer scene.Close()
+	scene.AddMesh([][3]float32{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, [][3]uint32{{0, 1, 2}}, AllMasks)
+	scene.Commit()
+	hits, _ := scene.ClosestHit([]Ray{NewRay([3]float32{0.25, 0.25, -1}, [3]float32{0, 0, 1})})
+	fmt.Printf("triangle %d at t = %g\n", hits[0].PrimitiveID, hits[0].T)
+	// Output: triangle 0 at t = 1
+}

@@ -1,0 +1,3 @@
+module kiwami.org/kiwami
+
+go 1.19

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+
+package kiwami
+
+/*
+#include <kiwami/kiwami.h>
+*/
+import "C"
+
+import (
+	"math"
+	"runtime"
+	"unsafe"
+)
+
+// NewRay makes a ray without end that meets meshes of all masks.
+func NewRay(origin, direction [3]float32) Ray {
+	return Ray{Origin: origin, Direction: direction, TMax: float32(math.Inf(1)), Mask: AllMasks}
+}
+
+// Scene is meshes under one acceleration structure. Changes take effect with Commit.
+type Scene struct {
+	object *C.kiwami_scene
+	device *C.kiwami_device
+}
+
+// NewScene makes an empty scene; without a device (nil) it makes one of its own.
+func NewScene(device *Device) (*Scene, error) {
+	if device == nil {
+		own, err := NewDevice(nil)
+		if err != nil {
+			return nil, err
+		}
+		defer own.Close() // the scene holds it
+		device = own
+	}
+	scene := &Scene{}
+	err := onOneThread(func() error {
+		return check(C.kiwami_scene_create(device.object, &scene.object), device.object)
+	})
+	if err != nil {
+		return nil, err
+	}
+	scene.device = device.object
+	C.kiwami_device_retain(scene.device)
+	runtime.SetFinalizer(scene, (*Scene).Close)
+	return scene, nil
+}
+
+// Close lets go of the scene. Closing twice is allowed.
+func (s *Scene) Close() {
+	C.kiwami_scene_release(s.object)
+	C.kiwami_device_release(s.device)
+	s.object, s.device = nil, nil
+	runtime.SetFinalizer(s, nil)
+}
+
+// call runs a call of the C interface on this scene.
+func (s *Scene) call(body func() C.kiwami_result) error {
+	if s.object == nil {
+		return &Error{C.KIWAMI_ERROR_INVALID_STATE, "the scene is closed"}
+	}
+	defer runtime.KeepAlive(s)
+	return onOneThread(func() error { return check(body(), s.device) })
+}
+
+func address[T any](slice []T) unsafe.Pointer {
+	if len(slice) == 0 {
+		return nil
+	}
+	return unsafe.Pointer(&slice[0])
+}
+
+// AddMesh adds a mesh, copied, and returns the number that hits report as GeometryID. Only a ray
+// with ray.Mask & mask != 0 meets it.
+func (s *Scene) AddMesh(vertices [][3]float32, triangles [][3]uint32, mask uint32) (uint32, error) {
+	var number C.uint32_t
+	err := s.call(func() C.kiwami_result {
+		var desc C.kiwami_triangle_mesh_desc
+		var geometry *C.kiwami_geometry
+		C.kiwami_triangle_mesh_desc_init(&desc, C.sizeof_kiwami_triangle_mesh_desc)
+		// Go's memory may not be held by C's, so the buffers are pinned while the library copies.
+		var pinner pinned
+		defer pinner.free()
+		desc.vertices = pinner.copy(address(vertices), len(vertices)*12)
+		desc.vertex_count = C.uint64_t(len(vertices))
+		desc.indices = pinner.copy(address(triangles), len(triangles)*12)
+		desc.triangle_count = C.uint64_t(len(triangles))
+		desc.mask = C.uint32_t(mask)
+		result := C.kiwami_triangle_mesh_create(s.device, &desc, &geometry)
+		if result != C.KIWAMI_OK {
+			return result
+		}
+		result = C.kiwami_scene_attach(s.object, geometry, &number)
+		C.kiwami_geometry_release(geometry)
+		return result
+	})
+	return uint32(number), err
+}
+
+// Remove removes a mesh; its number becomes free.
+func (s *Scene) Remove(geometryID uint32) error {
+	return s.call(func() C.kiwami_result {
+		return C.kiwami_scene_detach(s.object, C.uint32_t(geometryID))
+	})
+}
+
+// SetParameter sets one of KIWAMI_PARAMETER_* of scene.h.
+func (s *Scene) SetParameter(parameter uint32, value float64) error {
+	return s.call(func() C.kiwami_result {
+		return C.kiwami_scene_set_parameter(s.object, C.uint32_t(parameter), C.double(value))
+	})
+}
+
+// Commit builds the acceleration structure of what the scene holds now.
+func (s *Scene) Commit() error {
+	return s.call(func() C.kiwami_result { return C.kiwami_scene_commit(s.object) })
+}
+
+// ClosestHit finds the closest hit of each ray.
+func (s *Scene) ClosestHit(rays []Ray) ([]Hit, error) {
+	hits := make([]Hit, len(rays))
+	return hits, s.ClosestHitInto(rays, hits)
+}
+
+// ClosestHitInto is the same, into hits, of which there must be as many as rays.
+func (s *Scene) ClosestHitInto(rays []Ray, hits []Hit) error {
+	if len(hits) != len(rays) {
+		return &Error{C.KIWAMI_ERROR_INVALID_ARGUMENT, "hits and rays differ in length"}
+	}
+	return s.call(func() C.kiwami_result {
+		return C.kiwami_closest_hit(s.object, (*C.kiwami_ray)(address(rays)), 0,
+			(*C.kiwami_hit)(address(hits)), 0, C.size_t(len(rays)), nil)
+	})
+}
+
+// AnyHit finds out of each ray whether it has a hit.
+func (s *Scene) AnyHit(rays []Ray) ([]bool, error) {
+	occluded := make([]bool, len(rays))
+	err := s.call(func() C.kiwami_result {
+		return C.kiwami_any_hit(s.object, (*C.kiwami_ray)(address(rays)), 0,
+			(*C.uint8_t)(address(occluded)), 0, C.size_t(len(rays)), nil)
+	})
+	return occluded, err
+}
+
+// MultiHits are the hits of many rays: those of ray i are Hits[Offsets[i]:Offsets[i+1]].
+type MultiHits struct {
+	Offsets []uint64
+	Hits    []Hit
+}
+
+// Of returns the hits of one ray, by rising distance.
+func (m MultiHits) Of(ray int) []Hit { return m.Hits[m.Offsets[ray]:m.Offsets[ray+1]] }
+
+// MultiHit finds the nearest maxHits hits of each ray; 0 stands for all.
+func (s *Scene) MultiHit(rays []Ray, maxHits uint32) (MultiHits, error) {
+	found := MultiHits{make([]uint64, len(rays)+1), make([]Hit, len(rays))}
+	for {
+		isComplete := true
+		err := s.call(func() C.kiwami_result {
+			result := C.kiwami_multi_hit(s.object, (*C.kiwami_ray)(address(rays)), 0,
+				C.size_t(len(rays)), C.uint32_t(maxHits), (*C.kiwami_hit)(address(found.Hits)),
+				C.uint64_t(len(found.Hits)), (*C.uint64_t)(address(found.Offsets)), nil)
+			if result == C.KIWAMI_ERROR_CAPACITY {
+				isComplete = false
+				return C.KIWAMI_OK
+			}
+			return result
+		})
+		if err != nil {
+			return MultiHits{}, err
+		}
+		needed := found.Offsets[len(rays)]
+		if isComplete {
+			found.Hits = found.Hits[:needed]
+			return found, nil
+		}
+		found.Hits = make([]Hit, needed)
+	}
+}
+
+// CountHits counts the hits of each ray.
+func (s *Scene) CountHits(rays []Ray) ([]uint32, error) {
+	counts := make([]uint32, len(rays))
+	err := s.call(func() C.kiwami_result {
+		return C.kiwami_count_hits(s.object, (*C.kiwami_ray)(address(rays)), 0,
+			(*C.uint32_t)(address(counts)), 0, C.size_t(len(rays)), nil)
+	})
+	return counts, err
+}

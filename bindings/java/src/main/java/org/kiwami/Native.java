@@ -1,0 +1,591 @@
+// SPDX-License-Identifier: Apache-2.0
+// The C interface for JNA. Generated from the headers by
+// bindings/schema/generate.py; do not edit.
+package org.kiwami;
+
+import com.sun.jna.Callback;
+import com.sun.jna.Pointer;
+
+final class Native {
+  private Native() {}
+
+  static final int KIWAMI_ABI_VERSION = 0;
+  static final int KIWAMI_FILE_FORMAT_VERSION = 1;
+  static final int KIWAMI_INVALID_ID = 0xffffffff;
+  static final float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
+  static final int KIWAMI_VERSION_MAJOR = 0;
+  static final int KIWAMI_VERSION_MINOR = 1;
+  static final int KIWAMI_VERSION_PATCH = 0;
+  static final int KIWAMI_OK = 0;
+  static final int KIWAMI_ERROR_INVALID_ARGUMENT = -1;
+  static final int KIWAMI_ERROR_INVALID_STATE = -2;
+  static final int KIWAMI_ERROR_OUT_OF_MEMORY = -3;
+  static final int KIWAMI_ERROR_UNSUPPORTED_ISA = -4;
+  static final int KIWAMI_ERROR_TOO_LARGE = -5;
+  static final int KIWAMI_ERROR_CALLBACK = -6;
+  static final int KIWAMI_ERROR_VALIDATION = -7;
+  static final int KIWAMI_ERROR_INTERNAL = -8;
+  static final int KIWAMI_ERROR_CAPACITY = -9;
+  static final int KIWAMI_ERROR_INVALID_FILE = -10;
+  static final int KIWAMI_ERROR_IO = -11;
+  static final int KIWAMI_ISA_AUTO = 0;
+  static final int KIWAMI_ISA_SCALAR = 1;
+  static final int KIWAMI_ISA_SSE = 2;
+  static final int KIWAMI_ISA_AVX2 = 3;
+  static final int KIWAMI_ISA_AVX512 = 4;
+  static final int KIWAMI_DEVICE_VALIDATE = 1;
+  static final int KIWAMI_MESH_SHARE_BUFFERS = 1;
+  static final int KIWAMI_PARAMETER_BVH_WIDTH = 1;
+  static final int KIWAMI_PARAMETER_MERGE_LEAVES = 2;
+  static final int KIWAMI_PARAMETER_MERGE_RING = 3;
+  static final int KIWAMI_PARAMETER_BIN_COUNT = 4;
+  static final int KIWAMI_PARAMETER_MAX_LEAF_SIZE = 5;
+  static final int KIWAMI_PARAMETER_NODE_COST = 6;
+  static final int KIWAMI_PARAMETER_LEAF_COST = 7;
+  static final int KIWAMI_PARAMETER_VALIDATE_BUILD = 8;
+  static final int KIWAMI_PARAMETER_CONTRACTION = 9;
+  static final int KIWAMI_PARAMETER_BUILDER = 10;
+  static final int KIWAMI_PARAMETER_SPLIT_BUDGET = 11;
+  static final int KIWAMI_PARAMETER_SPLIT_ALPHA = 12;
+  static final int KIWAMI_PARAMETER_BIN_HALVING = 13;
+  static final int KIWAMI_PARAMETER_REASSIGN = 14;
+  static final int KIWAMI_PARAMETER_AAC_QUALITY = 17;
+  static final int KIWAMI_PARAMETER_CURVE_CODE = 18;
+  static final int KIWAMI_PARAMETER_LBVH_DELTA = 19;
+  static final int KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20;
+  static final int KIWAMI_PARAMETER_QUALITY = 30;
+  static final int KIWAMI_STAGE_BUILDER = 1;
+  static final int KIWAMI_STAGE_OPTIMIZER = 2;
+  static final int KIWAMI_STAGE_CONTRACTION = 3;
+  static final int KIWAMI_QUALITY_BALANCED = 0;
+  static final int KIWAMI_QUALITY_FAST = 1;
+  static final int KIWAMI_QUALITY_BEST = 2;
+  static final int KIWAMI_BUILDER_BINNED_SAH = 0;
+  static final int KIWAMI_BUILDER_LBVH = 1;
+  static final int KIWAMI_BUILDER_PLOC = 2;
+  static final int KIWAMI_BUILDER_SWEEP_SAH = 3;
+  static final int KIWAMI_BUILDER_SPATIAL_SPLIT = 4;
+  static final int KIWAMI_BUILDER_AGGLOMERATIVE = 5;
+  static final int KIWAMI_BUILDER_AAC = 6;
+  static final int KIWAMI_BUILDER_MINI_TREE = 7;
+  static final int KIWAMI_BUILDER_OIBVH = 8;
+  static final int KIWAMI_BUILDER_STR = 10;
+  static final int KIWAMI_BUILDER_TRBVH = 11;
+  static final int KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1;
+  static final int KIWAMI_OPTIMIZER_ROTATION = 2;
+  static final int KIWAMI_OPTIMIZER_TREELET = 3;
+  static final int KIWAMI_OPTIMIZER_AGGLOMERATIVE_TREELET = 4;
+  static final int KIWAMI_OPTIMIZER_REINSERTION = 5;
+  static final int KIWAMI_OPTIMIZER_REORDER_SATO = 6;
+  static final int KIWAMI_OPTIMIZER_REORDER_NARY = 7;
+  static final int KIWAMI_CONTRACTION_SURFACE_AREA = 0;
+  static final int KIWAMI_CONTRACTION_OPTIMAL = 1;
+  static final int KIWAMI_CONTRACTION_RAY_DISTRIBUTION = 2;
+  static final int KIWAMI_MAX_OPTIMIZERS = 8;
+  static final int KIWAMI_RAY_CULL_BACK_FACES = 1;
+  static final int KIWAMI_RAY_CULL_FRONT_FACES = 2;
+  static final int KIWAMI_QUERY_CALLING_THREAD = 1;
+  static final int KIWAMI_MEASURE_WITHOUT_EPO = 1;
+  static final int KIWAMI_COUNT_CLOSEST_HIT = 0;
+  static final int KIWAMI_COUNT_ANY_HIT = 1;
+  static final int KIWAMI_EXPORT_BINARY = 1;
+  static final int KIWAMI_EXPORT_WIDE4 = 2;
+  static final int KIWAMI_EXPORT_WIDE8 = 3;
+  static final int KIWAMI_EXPORT_COMPRESSED8 = 4;
+  static final int KIWAMI_LOAD_MAP = 1;
+  static final int KIWAMI_LOAD_TRUSTED = 2;
+  static final int KIWAMI_FILE_SCENE = 1;
+  static final int KIWAMI_FILE_BVH = 2;
+  static final int KIWAMI_FIT_NATIVE = 0;
+  static final int KIWAMI_FIT_SCALAR = 1;
+  static final int KIWAMI_FIT_NONE = 2;
+
+  /** Offsets of kiwami_device_desc. */
+  static final class DeviceDesc {
+    static final int STRUCT_BYTES = 80;
+    static final int STRUCT_SIZE = 0;
+    static final int ISA = 4;
+    static final int THREAD_COUNT = 8;
+    static final int FLAGS = 12;
+    static final int RUNNER = 16;
+    static final int RUNNER_USER = 24;
+    static final int RUNNER_WIDTH = 32;
+    static final int RESERVED = 36;
+    static final int ALLOCATE = 40;
+    static final int DEALLOCATE = 48;
+    static final int ALLOCATOR_USER = 56;
+    static final int LOG = 64;
+    static final int LOG_USER = 72;
+  }
+
+  /** Offsets of kiwami_device_info. */
+  static final class DeviceInfo {
+    static final int STRUCT_BYTES = 32;
+    static final int STRUCT_SIZE = 0;
+    static final int ISA = 4;
+    static final int ISA_AVAILABLE = 8;
+    static final int ISA_BUILT = 12;
+    static final int NATIVE_WIDTHS = 16;
+    static final int DEFAULT_BVH_WIDTH = 20;
+    static final int THREAD_COUNT = 24;
+    static final int RESERVED = 28;
+  }
+
+  /** Offsets of kiwami_triangle_mesh_desc. */
+  static final class TriangleMeshDesc {
+    static final int STRUCT_BYTES = 80;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int VERTICES = 8;
+    static final int VERTEX_OFFSET = 16;
+    static final int VERTEX_STRIDE = 24;
+    static final int VERTEX_COUNT = 32;
+    static final int INDICES = 40;
+    static final int INDEX_OFFSET = 48;
+    static final int INDEX_STRIDE = 56;
+    static final int TRIANGLE_COUNT = 64;
+    static final int MASK = 72;
+    static final int RESERVED = 76;
+  }
+
+  /** Offsets of kiwami_scene_info. */
+  static final class SceneInfo {
+    static final int STRUCT_BYTES = 144;
+    static final int STRUCT_SIZE = 0;
+    static final int BVH_WIDTH = 4;
+    static final int LEAF_WIDTH = 8;
+    static final int BVH_DEPTH = 12;
+    static final int TRIANGLE_COUNT = 16;
+    static final int SKIPPED_COUNT = 24;
+    static final int NODE_COUNT = 32;
+    static final int LEAF_BLOCK_COUNT = 40;
+    static final int NODE_BYTES = 48;
+    static final int LEAF_BYTES = 56;
+    static final int TOTAL_BYTES = 64;
+    static final int PEAK_BUILD_BYTES = 72;
+    static final int NODE_FILL = 80;
+    static final int LEAF_FILL = 88;
+    static final int SAH_COST = 96;
+    static final int BUILD_SECONDS = 104;
+    static final int BOUNDS_MIN = 112;
+    static final int BOUNDS_MAX = 124;
+    static final int REFERENCE_COUNT = 136;
+  }
+
+  /** Offsets of kiwami_ray. */
+  static final class Ray {
+    static final int STRUCT_BYTES = 48;
+    static final int ORIGIN_X = 0;
+    static final int ORIGIN_Y = 4;
+    static final int ORIGIN_Z = 8;
+    static final int TMIN = 12;
+    static final int DIRECTION_X = 16;
+    static final int DIRECTION_Y = 20;
+    static final int DIRECTION_Z = 24;
+    static final int TMAX = 28;
+    static final int TIME = 32;
+    static final int MASK = 36;
+    static final int FLAGS = 40;
+    static final int ID = 44;
+  }
+
+  /** Offsets of kiwami_hit. */
+  static final class Hit {
+    static final int STRUCT_BYTES = 36;
+    static final int T = 0;
+    static final int U = 4;
+    static final int V = 8;
+    static final int NORMAL_X = 12;
+    static final int NORMAL_Y = 16;
+    static final int NORMAL_Z = 20;
+    static final int PRIMITIVE_ID = 24;
+    static final int GEOMETRY_ID = 28;
+    static final int INSTANCE_ID = 32;
+  }
+
+  /** Offsets of kiwami_input_field. */
+  static final class InputField {
+    static final int STRUCT_BYTES = 16;
+    static final int DATA = 0;
+    static final int STRIDE = 8;
+  }
+
+  /** Offsets of kiwami_output_field. */
+  static final class OutputField {
+    static final int STRUCT_BYTES = 16;
+    static final int DATA = 0;
+    static final int STRIDE = 8;
+  }
+
+  /** Offsets of kiwami_ray_fields. */
+  static final class RayFields {
+    static final int STRUCT_BYTES = 184;
+    static final int STRUCT_SIZE = 0;
+    static final int RESERVED = 4;
+    static final int ORIGIN_X = 8;
+    static final int ORIGIN_Y = 24;
+    static final int ORIGIN_Z = 40;
+    static final int DIRECTION_X = 56;
+    static final int DIRECTION_Y = 72;
+    static final int DIRECTION_Z = 88;
+    static final int TMIN = 104;
+    static final int TMAX = 120;
+    static final int TIME = 136;
+    static final int MASK = 152;
+    static final int FLAGS = 168;
+  }
+
+  /** Offsets of kiwami_hit_fields. */
+  static final class HitFields {
+    static final int STRUCT_BYTES = 152;
+    static final int STRUCT_SIZE = 0;
+    static final int RESERVED = 4;
+    static final int T = 8;
+    static final int U = 24;
+    static final int V = 40;
+    static final int NORMAL_X = 56;
+    static final int NORMAL_Y = 72;
+    static final int NORMAL_Z = 88;
+    static final int PRIMITIVE_ID = 104;
+    static final int GEOMETRY_ID = 120;
+    static final int INSTANCE_ID = 136;
+  }
+
+  /** Offsets of kiwami_query. */
+  static final class Query {
+    static final int STRUCT_BYTES = 8;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+  }
+
+  /** Offsets of kiwami_bvh_node. */
+  static final class BvhNode {
+    static final int STRUCT_BYTES = 56;
+    static final int LOWER = 0;
+    static final int UPPER = 12;
+    static final int PARENT = 24;
+    static final int DEPTH = 28;
+    static final int FIRST_CHILD = 32;
+    static final int CHILD_COUNT = 36;
+    static final int FIRST_PRIMITIVE = 40;
+    static final int PRIMITIVE_COUNT = 44;
+    static final int STORAGE_INDEX = 48;
+    static final int STORAGE_MASK = 52;
+  }
+
+  /** Offsets of kiwami_bvh_primitive. */
+  static final class BvhPrimitive {
+    static final int STRUCT_BYTES = 8;
+    static final int GEOMETRY_ID = 0;
+    static final int PRIMITIVE_ID = 4;
+  }
+
+  /** Offsets of kiwami_bvh_info. */
+  static final class BvhInfo {
+    static final int STRUCT_BYTES = 56;
+    static final int STRUCT_SIZE = 0;
+    static final int WIDTH = 4;
+    static final int LEAF_WIDTH = 8;
+    static final int DEPTH = 12;
+    static final int NODE_COUNT = 16;
+    static final int LEAF_COUNT = 20;
+    static final int PRIMITIVE_COUNT = 24;
+    static final int RESERVED = 28;
+    static final int BYTES = 32;
+    static final int SKIPPED_COUNT = 40;
+    static final int BUILD_SECONDS = 48;
+  }
+
+  /** Offsets of kiwami_parameter_value. */
+  static final class ParameterValue {
+    static final int STRUCT_BYTES = 16;
+    static final int PARAMETER = 0;
+    static final int RESERVED = 4;
+    static final int VALUE = 8;
+  }
+
+  /** Offsets of kiwami_bvh_desc. */
+  static final class BvhDesc {
+    static final int STRUCT_BYTES = 72;
+    static final int STRUCT_SIZE = 0;
+    static final int WIDTH = 4;
+    static final int BOXES = 8;
+    static final int BOX_STRIDE = 16;
+    static final int BOX_COUNT = 24;
+    static final int GEOMETRY = 32;
+    static final int PARAMETERS = 40;
+    static final int PARAMETER_COUNT = 48;
+    static final int OPTIMIZERS = 56;
+    static final int OPTIMIZER_COUNT = 64;
+  }
+
+  /** Offsets of kiwami_bvh_measure_desc. */
+  static final class BvhMeasureDesc {
+    static final int STRUCT_BYTES = 32;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int NODE_COST = 8;
+    static final int LEAF_COST = 16;
+    static final int BLOCK_SIZE = 24;
+    static final int RESERVED = 28;
+  }
+
+  /** Offsets of kiwami_bvh_measures. */
+  static final class BvhMeasures {
+    static final int STRUCT_BYTES = 48;
+    static final int STRUCT_SIZE = 0;
+    static final int RESERVED = 4;
+    static final int SAH = 8;
+    static final int EPO = 16;
+    static final int NODE_AREA = 24;
+    static final int LEAF_AREA = 32;
+    static final int SURFACE_AREA = 40;
+  }
+
+  /** Offsets of kiwami_bvh_node_measures. */
+  static final class BvhNodeMeasures {
+    static final int STRUCT_BYTES = 24;
+    static final int AREA = 0;
+    static final int SAH = 8;
+    static final int EPO = 16;
+  }
+
+  /** Offsets of kiwami_visits. */
+  static final class Visits {
+    static final int STRUCT_BYTES = 48;
+    static final int STRUCT_SIZE = 0;
+    static final int RESERVED = 4;
+    static final int RAY_COUNT = 8;
+    static final int HIT_COUNT = 16;
+    static final int NODE_VISITS = 24;
+    static final int LEAF_VISITS = 32;
+    static final int LEAF_COUNT_VARIABILITY = 40;
+  }
+
+  /** Offsets of kiwami_ray_visits. */
+  static final class RayVisits {
+    static final int STRUCT_BYTES = 8;
+    static final int NODE_VISITS = 0;
+    static final int LEAF_VISITS = 4;
+  }
+
+  /** Offsets of kiwami_binary_node. */
+  static final class BinaryNode {
+    static final int STRUCT_BYTES = 32;
+    static final int LOWER = 0;
+    static final int FIRST = 12;
+    static final int UPPER = 16;
+    static final int COUNT = 28;
+  }
+
+  /** Offsets of kiwami_wide4_node. */
+  static final class Wide4Node {
+    static final int STRUCT_BYTES = 128;
+    static final int LOWER_X = 0;
+    static final int LOWER_Y = 16;
+    static final int LOWER_Z = 32;
+    static final int UPPER_X = 48;
+    static final int UPPER_Y = 64;
+    static final int UPPER_Z = 80;
+    static final int CHILD = 96;
+    static final int COUNT = 112;
+  }
+
+  /** Offsets of kiwami_wide8_node. */
+  static final class Wide8Node {
+    static final int STRUCT_BYTES = 256;
+    static final int LOWER_X = 0;
+    static final int LOWER_Y = 32;
+    static final int LOWER_Z = 64;
+    static final int UPPER_X = 96;
+    static final int UPPER_Y = 128;
+    static final int UPPER_Z = 160;
+    static final int CHILD = 192;
+    static final int COUNT = 224;
+  }
+
+  /** Offsets of kiwami_compressed8_node. */
+  static final class Compressed8Node {
+    static final int STRUCT_BYTES = 80;
+    static final int ORIGIN = 0;
+    static final int EXPONENT = 12;
+    static final int INNER_MASK = 15;
+    static final int CHILD_BASE = 16;
+    static final int PRIMITIVE_BASE = 20;
+    static final int META = 24;
+    static final int LOWER_X = 32;
+    static final int LOWER_Y = 40;
+    static final int LOWER_Z = 48;
+    static final int UPPER_X = 56;
+    static final int UPPER_Y = 64;
+    static final int UPPER_Z = 72;
+  }
+
+  /** Offsets of kiwami_save_desc. */
+  static final class SaveDesc {
+    static final int STRUCT_BYTES = 48;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int PATH = 8;
+    static final int WRITE = 16;
+    static final int WRITE_USER = 24;
+    static final int DATA = 32;
+    static final int CAPACITY = 40;
+  }
+
+  /** Offsets of kiwami_load_desc. */
+  static final class LoadDesc {
+    static final int STRUCT_BYTES = 56;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int PATH = 8;
+    static final int READ = 16;
+    static final int READ_USER = 24;
+    static final int DATA = 32;
+    static final int SIZE = 40;
+    static final int BVH_WIDTH = 48;
+    static final int RESERVED = 52;
+  }
+
+  /** Offsets of kiwami_file_info. */
+  static final class FileInfo {
+    static final int STRUCT_BYTES = 56;
+    static final int STRUCT_SIZE = 0;
+    static final int KIND = 4;
+    static final int FIT = 8;
+    static final int FORMAT_VERSION = 12;
+    static final int LIBRARY_VERSION = 16;
+    static final int BVH_WIDTH = 20;
+    static final int SECTION_COUNT = 24;
+    static final int RESERVED = 28;
+    static final int FILE_BYTES = 32;
+    static final int TRIANGLE_COUNT = 40;
+    static final int NODE_COUNT = 48;
+  }
+
+  static {
+    com.sun.jna.Native.register(LibraryFile.path());
+  }
+
+  static native int kiwami_version();
+
+  static native int kiwami_abi_version();
+
+  static native Pointer kiwami_result_name(int result);
+
+  static native long kiwami_last_error(Pointer device, Pointer text, long capacity);
+
+  static native int kiwami_device_desc_init(Pointer desc, long size);
+
+  static native int kiwami_device_create(Pointer desc, Pointer device);
+
+  static native void kiwami_device_retain(Pointer device);
+
+  static native void kiwami_device_release(Pointer device);
+
+  static native int kiwami_device_get_info(Pointer device, Pointer info);
+
+  static native Pointer kiwami_isa_name(int isa);
+
+  static native int kiwami_triangle_mesh_desc_init(Pointer desc, long size);
+
+  static native int kiwami_triangle_mesh_create(Pointer device, Pointer desc, Pointer geometry);
+
+  static native void kiwami_geometry_retain(Pointer geometry);
+
+  static native void kiwami_geometry_release(Pointer geometry);
+
+  static native int kiwami_scene_create(Pointer device, Pointer scene);
+
+  static native void kiwami_scene_retain(Pointer scene);
+
+  static native void kiwami_scene_release(Pointer scene);
+
+  static native int kiwami_scene_attach(Pointer scene, Pointer geometry, Pointer geometryId);
+
+  static native int kiwami_scene_detach(Pointer scene, int geometryId);
+
+  static native int kiwami_scene_set_parameter(Pointer scene, int parameter, double value);
+
+  static native int kiwami_parameter_bounds(int parameter, Pointer lowest, Pointer highest, Pointer preset);
+
+  static native int kiwami_scene_set_representative_rays(Pointer scene, Pointer rays, long stride, long count);
+
+  static native int kiwami_scene_set_optimizers(Pointer scene, Pointer methods, long count);
+
+  static native int kiwami_quality_methods(int quality, Pointer builder, Pointer optimizers, Pointer optimizerCount, Pointer contraction);
+
+  static native Pointer kiwami_method_name(int stage, int method);
+
+  static native int kiwami_scene_commit(Pointer scene);
+
+  static native int kiwami_scene_get_info(Pointer scene, Pointer info);
+
+  static native int kiwami_scene_validate(Pointer scene);
+
+  static native int kiwami_ray_fields_init(Pointer rays, long size);
+
+  static native int kiwami_hit_fields_init(Pointer hits, long size);
+
+  static native int kiwami_query_init(Pointer query, long size);
+
+  static native int kiwami_closest_hit(Pointer scene, Pointer rays, long rayStride, Pointer hits, long hitStride, long count, Pointer query);
+
+  static native int kiwami_any_hit(Pointer scene, Pointer rays, long rayStride, Pointer occluded, long stride, long count, Pointer query);
+
+  static native int kiwami_closest_hit_fields(Pointer scene, Pointer rays, Pointer hits, long count, Pointer query);
+
+  static native int kiwami_any_hit_fields(Pointer scene, Pointer rays, Pointer occluded, long count, Pointer query);
+
+  static native int kiwami_multi_hit(Pointer scene, Pointer rays, long rayStride, long count, int maxHits, Pointer hits, long hitCapacity, Pointer offsets, Pointer query);
+
+  static native int kiwami_count_hits(Pointer scene, Pointer rays, long rayStride, Pointer counts, long stride, long count, Pointer query);
+
+  static native int kiwami_multi_hit_fields(Pointer scene, Pointer rays, long count, int maxHits, Pointer hits, long hitCapacity, Pointer offsets, Pointer query);
+
+  static native int kiwami_count_hits_fields(Pointer scene, Pointer rays, Pointer counts, long count, Pointer query);
+
+  static native int kiwami_scene_get_bvh(Pointer scene, Pointer bvh);
+
+  static native int kiwami_bvh_desc_init(Pointer desc, long size);
+
+  static native int kiwami_bvh_build(Pointer device, Pointer desc, Pointer bvh);
+
+  static native int kiwami_bvh_refit(Pointer bvh, Pointer boxes, long stride, long count);
+
+  static native int kiwami_bvh_validate(Pointer bvh);
+
+  static native void kiwami_bvh_retain(Pointer bvh);
+
+  static native void kiwami_bvh_release(Pointer bvh);
+
+  static native int kiwami_bvh_get_info(Pointer bvh, Pointer info);
+
+  static native int kiwami_bvh_get_nodes(Pointer bvh, long first, long count, Pointer nodes, long stride);
+
+  static native int kiwami_bvh_get_primitives(Pointer bvh, long first, long count, Pointer primitives, long stride);
+
+  static native int kiwami_bvh_measure_desc_init(Pointer desc, long size);
+
+  static native int kiwami_bvh_measure(Pointer bvh, Pointer desc, Pointer measures, Pointer nodes, long stride);
+
+  static native int kiwami_scene_count_visits(Pointer scene, Pointer rays, long rayStride, long count, int query, Pointer visits, Pointer each, long eachStride);
+
+  static native int kiwami_bvh_export_counts(Pointer bvh, int format, Pointer nodeCount, Pointer primitiveCount);
+
+  static native int kiwami_bvh_export(Pointer bvh, int format, Pointer nodes, long nodeBytes, Pointer primitives, long primitiveCount);
+
+  static native int kiwami_save_desc_init(Pointer desc, long size);
+
+  static native int kiwami_load_desc_init(Pointer desc, long size);
+
+  static native int kiwami_scene_save(Pointer scene, Pointer desc, Pointer bytes);
+
+  static native int kiwami_scene_load(Pointer device, Pointer desc, Pointer scene);
+
+  static native int kiwami_bvh_save(Pointer bvh, Pointer desc, Pointer bytes);
+
+  static native int kiwami_bvh_load(Pointer device, Pointer desc, Pointer bvh);
+
+  static native int kiwami_file_get_info(Pointer device, Pointer desc, Pointer info);
+}

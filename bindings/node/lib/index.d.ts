@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+export type Isa = 'auto' | 'scalar' | 'sse' | 'avx2' | 'avx512';
+
+/** An error of the library: its number as `result`, its sentence as the message. */
+export class KiwamiError extends Error {
+  readonly result: number;
+}
+
+export class Device {
+  constructor(options?: { isa?: Isa; threads?: number; validate?: boolean });
+  readonly isa: string;
+  close(): void;
+}
+
+export class Rays {
+  constructor(count: number);
+  static from(
+    origins: ArrayLike<number> & { slice(first: number, end: number): ArrayLike<number> },
+    directions: ArrayLike<number> & { slice(first: number, end: number): ArrayLike<number> },
+    options?: { tmin?: number; tmax?: number; mask?: number },
+  ): Rays;
+  readonly count: number;
+  /** 12 words a ray, as kiwami_ray of trace.h. */
+  readonly floats: Float32Array;
+  /** The same memory. */
+  readonly words: Uint32Array;
+  set(
+    ray: number,
+    origin: ArrayLike<number>,
+    direction: ArrayLike<number>,
+    tmin?: number,
+    tmax?: number,
+  ): void;
+}
+
+export class Hits {
+  constructor(count: number);
+  readonly count: number;
+  /** 9 words a hit, as kiwami_hit of trace.h. */
+  readonly floats: Float32Array;
+  /** The same memory. */
+  readonly words: Uint32Array;
+  t(hit: number): number;
+  u(hit: number): number;
+  v(hit: number): number;
+  normal(hit: number): Float32Array;
+  primitiveId(hit: number): number;
+  geometryId(hit: number): number;
+  instanceId(hit: number): number;
+  isHit(hit: number): boolean;
+}
+
+export interface MultiHits {
+  /** The hits of ray i are offsets[i] to offsets[i + 1] - 1. */
+  offsets: Float64Array;
+  hits: Hits;
+}
+
+export class Scene {
+  constructor(device?: Device);
+  addMesh(
+    vertices: ArrayLike<number>,
+    triangles: ArrayLike<number>,
+    options?: { mask?: number },
+  ): number;
+  remove(geometryId: number): void;
+  setParameter(parameter: number, value: number): void;
+  commit(): Promise<void>;
+  commitSync(): void;
+  closestHit(rays: Rays, hits?: Hits): Hits;
+  anyHit(rays: Rays, occluded?: Uint8Array): Uint8Array;
+  multiHit(rays: Rays, maxHits?: number): MultiHits;
+  countHits(rays: Rays, counts?: Uint32Array): Uint32Array;
+  close(): void;
+}
+
+/** The constants of the C interface. */
+export const constants: { readonly [name: string]: number };

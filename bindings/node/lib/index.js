@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kiwami for Node: ray tracing on CPUs, in batches of typed arrays.
+'use strict';
+
+const {
+  KiwamiError,
+  check,
+  constants,
+  native,
+  receiveHandle,
+  receiveStruct,
+  withDescriptor,
+} = require('./library');
+
+const ISAS = {
+  auto: constants.KIWAMI_ISA_AUTO,
+  scalar: constants.KIWAMI_ISA_SCALAR,
+  sse: constants.KIWAMI_ISA_SSE,
+  avx2: constants.KIWAMI_ISA_AVX2,
+  avx512: constants.KIWAMI_ISA_AVX512,
+};
+const ALL_MASKS = 0xffffffff;
+const RAY_WORDS = 12;
+const HIT_WORDS = 9;
+
+const released = new FinalizationRegistry((release) => release());
+
+/** Owns one reference to an object of the library. */
+class Handle {
+  constructor(object, release) {
+    this.object = object;
+    this.release = () => release(object);
+    released.register(this, this.release, this);
+  }
+
+  /** The object for a call. */
+  get address() {
+    if (!this.object) throw new Error(`this ${this.constructor.name} is closed`);
+    return this.object;
+  }
+
+  /** Lets go of the object at once. Closing twice is allowed. */
+  close() {
+    if (!this.object) return;
+    this.object = null;
+    released.unregister(this);
+    this.release();
+  }
+}
+
+/** Kernels of one instruction set and the threads that run them. */
+class Device extends Handle {
+  constructor({ isa = 'auto', threads = 0, validate = false } = {}) {
+    if (!(isa in ISAS)) {
+      throw new RangeError(`isa is '${isa}', expected one of ${Object.keys(ISAS).join(', ')}`);
+    }
+    const changes = {
+      isa: ISAS[isa],
+      thread_count: threads,
+      flags: validate ? constants.KIWAMI_DEVICE_VALIDATE : 0,
+    };
+    const object = withDescriptor(
+      'kiwami_device_desc',
+      native.kiwami_device_desc_init,
+      changes,
+      (desc) => receiveHandle((target) => check(native.kiwami_device_create(desc, target))),
+    );
+    super(object, native.kiwami_device_release);
+  }
+
+  /** The name of the instruction set whose kernels run. */
+  get isa() {
+    const info = receiveStruct('kiwami_device_info', (target) =>
+      check(native.kiwami_device_get_info(this.address, target), this.address),
+    );
+    return native.kiwami_isa_name(info.isa);
+  }
+}
+
+/** Rays in one typed array, which the library reads where it lies: 12 words a ray. */
+class Rays {
+  constructor(count) {
+    this.count = count;
+    this.floats = new Float32Array(count * RAY_WORDS);
+    this.words = new Uint32Array(this.floats.buffer);
+    for (let i = 0; i < count; ++i) {
+      this.floats[i * RAY_WORDS + 7] = Infinity;
+      this.words[i * RAY_WORDS + 9] = ALL_MASKS;
+    }
+  }
+
+  /** Rays of origins and directions, three numbers each; tmin, tmax and mask hold for all. */
+  static from(origins, directions, { tmin = 0, tmax = Infinity, mask = ALL_MASKS } = {}) {
+    if (origins.length !== directions.length || origins.length % 3 !== 0) {
+      throw new RangeError(
+        `origins has ${origins.length} and directions ${directions.length} numbers, ` +
+          'expected the same multiple of 3',
+      );
+    }
+    const rays = new Rays(origins.length / 3);
+    for (let i = 0; i < rays.count; ++i) {
+      rays.set(i, origins.slice(3 * i, 3 * i + 3), directions.slice(3 * i, 3 * i + 3), tmin, tmax);
+      rays.words[i * RAY_WORDS + 9] = mask;
+    }
+    return rays;
+  }
+
+  set(ray, origin, direction, tmin = 0, tmax = Infinity) {
+    const first = ray * RAY_WORDS;
+    this.floats.set(origin, first);
+    this.floats[first + 3] = tmin;
+    this.floats.set(direction, first + 4);
+    this.floats[first + 7] = tmax;
+  }
+}
+
+/** Answers in one typed array, which the library writes where it lies: 9 words a hit. */
+class Hits {
+  constructor(count) {
+    this.count = count;
+    this.floats = new Float32Array(count * HIT_WORDS);
+    this.words = new Uint32Array(this.floats.buffer);
+  }
+  /** Distance in units of the direction's length; Infinity for a miss. */
+  t(hit) {
+    return this.floats[hit * HIT_WORDS];
+  }
+  /** The point is (1 - u - v) a + u b + v c. */
+  u(hit) {
+    return this.floats[hit * HIT_WORDS + 1];
+  }
+  v(hit) {
+    return this.floats[hit * HIT_WORDS + 2];
+  }
+  /** (b - a) x (c - a), not normalised. */
+  normal(hit) {
+    return this.floats.slice(hit * HIT_WORDS + 3, hit * HIT_WORDS + 6);
+  }
+  primitiveId(hit) {
+    return this.words[hit * HIT_WORDS + 6];
+  }
+  geometryId(hit) {
+    return this.words[hit * HIT_WORDS + 7];
+  }
+  instanceId(hit) {
+    return this.words[hit * HIT_WORDS + 8];
+  }
+  isHit(hit) {
+    return this.primitiveId(hit) !== constants.KIWAMI_INVALID_ID;
+  }
+}
+
+/** An address for an array that may be empty: the library takes null only where nothing is. */
+const addressable = (array) => (array.length ? array : new Uint8Array(1));
+
+/** Numbers as an array of this kind: itself if it is one, else a copy whose values are checked. */
+function typed(Kind, values, name) {
+  if (values.length % 3 !== 0) {
+    throw new RangeError(`${name} has ${values.length} numbers, expected a multiple of 3`);
+  }
+  if (values instanceof Kind) return values;
+  const array = Kind.from(values);
+  const isKept = (value, i) => Kind !== Uint32Array || value === array[i];
+  const changed = Array.prototype.findIndex.call(values, (value, i) => !isKept(value, i));
+  if (changed >= 0) {
+    throw new RangeError(`${name} holds ${values[changed]}, expected whole numbers from 0 on`);
+  }
+  return array;
+}
+
+/** Meshes under one acceleration structure. Changes take effect with commit(). */
+class Scene extends Handle {
+  constructor(device = new Device()) {
+    const object = receiveHandle((target) =>
+      check(native.kiwami_scene_create(device.address, target), device.address),
+    );
+    const held = device.address;
+    native.kiwami_device_retain(held);
+    super(object, (scene) => {
+      native.kiwami_scene_release(scene);
+      native.kiwami_device_release(held);
+    });
+    this.device = held;
+  }
+
+  check(result) {
+    check(result, this.device);
+  }
+
+  /** Adds a mesh, copied: three numbers a vertex, three a triangle. Returns the number that hits
+   * report. Only a ray with (its mask & mask) !== 0 meets it. */
+  addMesh(vertices, triangles, { mask = ALL_MASKS } = {}) {
+    const positions = typed(Float32Array, vertices, 'vertices');
+    const indices = typed(Uint32Array, triangles, 'triangles');
+    const changes = {
+      vertices: addressable(positions),
+      vertex_count: positions.length / 3,
+      indices: addressable(indices),
+      triangle_count: indices.length / 3,
+      mask,
+    };
+    const geometry = withDescriptor(
+      'kiwami_triangle_mesh_desc',
+      native.kiwami_triangle_mesh_desc_init,
+      changes,
+      (desc) =>
+        receiveHandle((target) =>
+          this.check(native.kiwami_triangle_mesh_create(this.device, desc, target)),
+        ),
+    );
+    const number = new Uint32Array(1);
+    try {
+      this.check(native.kiwami_scene_attach(this.address, geometry, number));
+    } finally {
+      native.kiwami_geometry_release(geometry);
+    }
+    return number[0];
+  }
+
+  /** Removes a mesh; its number becomes free. */
+  remove(geometryId) {
+    this.check(native.kiwami_scene_detach(this.address, geometryId));
+  }
+
+  /** Sets one of KIWAMI_PARAMETER_*, found in `constants`. */
+  setParameter(parameter, value) {
+    this.check(native.kiwami_scene_set_parameter(this.address, parameter, value));
+  }
+
+  /** Builds the acceleration structure on another thread; nothing else may use the scene until
+   * the promise is settled. */
+  commit() {
+    return new Promise((resolve, reject) => {
+      // The sentence of an error stays on that thread; a second commit here would repeat the work.
+      native.kiwami_scene_commit.async(this.address, (problem, result) => {
+        if (problem) reject(problem);
+        else if (result === constants.KIWAMI_OK) resolve();
+        else reject(new KiwamiError(result, native.kiwami_result_name(result)));
+      });
+    });
+  }
+
+  /** The same on this thread. */
+  commitSync() {
+    this.check(native.kiwami_scene_commit(this.address));
+  }
+
+  /** The closest hit of each ray; into hits, if they are given. */
+  closestHit(rays, hits = new Hits(rays.count)) {
+    if (hits.count !== rays.count) {
+      throw new RangeError(`hits has room for ${hits.count}, expected ${rays.count}`);
+    }
+    const { address } = this;
+    this.check(
+      native.kiwami_closest_hit(
+        address, addressable(rays.floats), 0, addressable(hits.floats), 0, rays.count, null,
+      ),
+    );
+    return hits;
+  }
+
+  /** 1 for each ray that has a hit, 0 for the others. */
+  anyHit(rays, occluded = new Uint8Array(rays.count)) {
+    if (occluded.length !== rays.count) {
+      throw new RangeError(`occluded has room for ${occluded.length}, expected ${rays.count}`);
+    }
+    this.check(
+      native.kiwami_any_hit(
+        this.address, addressable(rays.floats), 0, addressable(occluded), 0, rays.count, null,
+      ),
+    );
+    return occluded;
+  }
+
+  /** The nearest maxHits hits of each ray, by rising distance; 0 stands for all. Those of ray i
+   * are hits offsets[i] to offsets[i + 1] - 1. */
+  multiHit(rays, maxHits = 0) {
+    const offsets = new BigUint64Array(rays.count + 1);
+    let hits = new Hits(rays.count);
+    for (;;) {
+      const result = native.kiwami_multi_hit(
+        this.address, addressable(rays.floats), 0, rays.count, maxHits, addressable(hits.floats),
+        hits.count, offsets, null,
+      );
+      const needed = Number(offsets[rays.count]);
+      if (result !== constants.KIWAMI_ERROR_CAPACITY) {
+        this.check(result);
+        hits.count = needed;
+        return { offsets: Float64Array.from(offsets, Number), hits };
+      }
+      hits = new Hits(needed);
+    }
+  }
+
+  /** How many hits each ray has. */
+  countHits(rays, counts = new Uint32Array(rays.count)) {
+    this.check(
+      native.kiwami_count_hits(
+        this.address, addressable(rays.floats), 0, addressable(counts), 0, rays.count, null,
+      ),
+    );
+    return counts;
+  }
+}
+
+module.exports = { Device, Hits, KiwamiError, Rays, Scene, constants };

@@ -1,0 +1,398 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes: meshes under one acceleration structure, and rays against them."""
+
+import ctypes
+
+import numpy as np
+
+from . import _native
+from ._library import Handle, check, descriptor, library
+from .arrays import (
+    as_column,
+    as_float_rows,
+    as_indices,
+    as_positions,
+    hit_dtype,
+    ray_dtype,
+    set_input,
+)
+from .device import default_device
+from .hits import Hits, hits_for
+
+_CULL = {
+    None: 0,
+    "back": _native.KIWAMI_RAY_CULL_BACK_FACES,
+    "front": _native.KIWAMI_RAY_CULL_FRONT_FACES,
+}
+QUALITIES = {
+    "fast": _native.KIWAMI_QUALITY_FAST,
+    "balanced": _native.KIWAMI_QUALITY_BALANCED,
+    "best": _native.KIWAMI_QUALITY_BEST,
+}
+
+
+class _Geometry(Handle):
+    _release = staticmethod(library.kiwami_geometry_release)
+
+
+class RayBatch:
+    """Rays on their way to the library: records of ray_dtype, or fields that lie apart.
+
+    Holds every array that the library is about to read.
+    """
+
+    def __init__(self, rays, directions, tmin, tmax, time, mask, cull):
+        if cull not in _CULL:
+            raise ValueError(f"cull is {cull!r}, expected None, 'back' or 'front'")
+        if isinstance(rays, np.ndarray) and rays.dtype == ray_dtype:
+            self._take_records(rays, directions)
+        else:
+            self._take_fields(rays, directions, tmin, tmax, time, mask, _CULL[cull])
+
+    def _take_records(self, rays, directions):
+        if directions is not None:
+            raise TypeError("directions are given beside rays that have theirs, expected None")
+        self.shape, self.count = rays.shape, rays.size
+        self.records = rays.reshape(-1)
+        if not self.records.flags.aligned or self.records.strides[0] < ray_dtype.itemsize:
+            self.records = np.ascontiguousarray(self.records)
+
+    def _take_fields(self, rays, directions, tmin, tmax, time, mask, flags):
+        self.records = None
+        if directions is None:
+            rows, shape = as_float_rows(rays, 6, "rays")
+            origins, directions = rows[:, :3], rows[:, 3:]
+        else:
+            origins, first = as_float_rows(rays, 3, "origins")
+            directions, second = as_float_rows(directions, 3, "directions")
+            shape = np.broadcast_shapes(first, second)
+            count = int(np.prod(shape, dtype=np.int64))
+            if origins.shape[0] != count:
+                origins, _ = as_float_rows(
+                    np.broadcast_to(origins.reshape(*first, 3), (*shape, 3)), 3, "origins"
+                )
+            if directions.shape[0] != count:
+                directions, _ = as_float_rows(
+                    np.broadcast_to(directions.reshape(*second, 3), (*shape, 3)), 3, "directions"
+                )
+        self.shape, self.count = shape, origins.shape[0]
+        columns = {
+            "tmin": as_column(tmin, self.count, shape, np.float32, "tmin"),
+            "tmax": as_column(tmax, self.count, shape, np.float32, "tmax"),
+            "time": as_column(time, self.count, shape, np.float32, "time"),
+            "mask": as_column(mask, self.count, shape, np.uint32, "mask"),
+            "flags": as_column(flags, self.count, shape, np.uint32, "flags"),
+        }
+        for axis, name in enumerate("xyz"):
+            columns[f"origin_{name}"] = origins[:, axis]
+            columns[f"direction_{name}"] = directions[:, axis]
+        self.columns = columns
+        self.fields = descriptor(_native.kiwami_ray_fields, library.kiwami_ray_fields_init)
+        for name, column in columns.items():
+            set_input(getattr(self.fields, name), column)
+
+
+def _hit_fields(records):
+    """The fields of an array of hits, as the library fills them."""
+    fields = descriptor(_native.kiwami_hit_fields, library.kiwami_hit_fields_init)
+    names = [name for name, _ in _native.kiwami_hit._fields_]
+    for name in names:
+        field = getattr(fields, name)
+        field.data = records.ctypes.data + getattr(_native.kiwami_hit, name).offset
+        field.stride = records.strides[0] if records.ndim and records.size else 36
+    return fields
+
+
+class Scene(Handle):
+    """Triangle meshes under one acceleration structure.
+
+        scene = kiwami.Scene(vertices, faces)
+        hits = scene.closest(origins, directions)
+
+    vertices  (V, 3) of numbers; float32 whose rows lie together is read where it lies
+    faces     (F, 3) of any integers; None: vertices 3i, 3i + 1, 3i + 2 make triangle i
+    device    a Device; None: the default one
+    quality   "fast", "balanced" or "best"
+
+    Changes take effect with commit(), or with the next query. Queries may come from any number of
+    threads at once once the scene is committed; the GIL is released while the library works.
+    """
+
+    _release = staticmethod(library.kiwami_scene_release)
+
+    def __init__(self, vertices=None, faces=None, *, device=None, mask=0xFFFFFFFF, quality=None):
+        self._device = device or default_device()
+        self._changed = True
+        self._buffers = {}
+        address = ctypes.c_void_p()
+        check(library.kiwami_scene_create(self._device, ctypes.byref(address)), self._device)
+        super().__init__(address.value)
+        if quality is not None:
+            if quality not in QUALITIES:
+                raise ValueError(f"quality is {quality!r}, expected one of {', '.join(QUALITIES)}")
+            self.set_parameter(_native.KIWAMI_PARAMETER_QUALITY, QUALITIES[quality])
+        if vertices is not None:
+            self.add(vertices, faces, mask=mask)
+            self.commit()
+        elif faces is not None:
+            raise TypeError("faces are given without vertices")
+
+    @property
+    def device(self):
+        return self._device
+
+    def add(self, vertices, faces=None, *, mask=0xFFFFFFFF, share=False):
+        """Adds a mesh and returns its number, which hits report as geometry_id.
+
+        share  the library reads float32 and uint32 arrays where they lie instead of copying them;
+               they may not change while the scene lives.
+        """
+        desc = descriptor(
+            _native.kiwami_triangle_mesh_desc, library.kiwami_triangle_mesh_desc_init
+        )
+        positions = as_positions(vertices, "vertices")
+        desc.vertices, desc.vertex_count = positions.ctypes.data, positions.shape[0]
+        desc.vertex_stride = positions.strides[0] if positions.shape[0] > 1 else 12
+        indices = None
+        if faces is None:
+            desc.triangle_count = positions.shape[0] // 3
+        else:
+            indices = as_indices(faces, positions.shape[0], "faces")
+            desc.indices, desc.triangle_count = indices.ctypes.data, indices.shape[0]
+            desc.index_stride = indices.strides[0] if indices.shape[0] > 1 else 12
+        desc.mask = mask
+        desc.flags = _native.KIWAMI_MESH_SHARE_BUFFERS if share else 0
+        address = ctypes.c_void_p()
+        check(
+            library.kiwami_triangle_mesh_create(
+                self._device, ctypes.byref(desc), ctypes.byref(address)
+            ),
+            self._device,
+        )
+        number = ctypes.c_uint32()
+        with _Geometry(address.value) as geometry:
+            check(library.kiwami_scene_attach(self, geometry, ctypes.byref(number)), self._device)
+        if share:
+            self._buffers[number.value] = (positions, indices)
+        self._changed = True
+        return number.value
+
+    def remove(self, geometry_id):
+        """Removes a mesh; its number becomes free."""
+        check(library.kiwami_scene_detach(self, geometry_id), self._device)
+        # What was committed still reads shared buffers.
+        self._changed = True
+
+    def set_parameter(self, parameter, value):
+        """Sets one of kiwami.PARAMETER_*; see the C header scene.h."""
+        check(library.kiwami_scene_set_parameter(self, parameter, value), self._device)
+        self._changed = True
+
+    def commit(self):
+        """Builds the acceleration structure of what the scene holds now."""
+        check(library.kiwami_scene_commit(self), self._device)
+        self._changed = False
+
+    def _prepare(self):
+        self._require_open()
+        if self._changed:
+            self.commit()
+
+    @property
+    def info(self):
+        """What the committed structure is made of, as a dict; see kiwami_scene_info."""
+        self._prepare()
+        info = _native.kiwami_scene_info(struct_size=ctypes.sizeof(_native.kiwami_scene_info))
+        check(library.kiwami_scene_get_info(self, ctypes.byref(info)), self._device)
+        values = {name: getattr(info, name) for name, _ in info._fields_ if name != "struct_size"}
+        for name in ("bounds_min", "bounds_max"):
+            values[name] = np.array(values[name], np.float32)
+        return values
+
+    @property
+    def bounds(self):
+        """The least and the greatest corner, (2, 3)."""
+        info = self.info
+        return np.stack([info["bounds_min"], info["bounds_max"]])
+
+    def closest(
+        self,
+        rays,
+        directions=None,
+        *,
+        tmin=0.0,
+        tmax=np.inf,
+        time=0.0,
+        mask=0xFFFFFFFF,
+        cull=None,
+        out=None,
+    ):
+        """The closest hit of each ray, as Hits.
+
+        rays        (..., 3) origins with directions (..., 3); or (..., 6), both in one; or records
+                    of ray_dtype (make_rays), which are the quickest. float32 is read where it
+                    lies, whatever its strides; other numbers are converted.
+        tmin, tmax, time, mask
+                    one number, or one each
+        cull        "back" or "front": triangles seen from there are not met
+        out         where the hits go: an array of hit_dtype, or earlier Hits
+        """
+        self._prepare()
+        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull)
+        records = hits_for(batch.shape, out)
+        if batch.records is not None:
+            result = library.kiwami_closest_hit(
+                self,
+                batch.records.ctypes.data,
+                batch.records.strides[0],
+                records.ctypes.data,
+                records.itemsize,
+                batch.count,
+                None,
+            )
+        else:
+            result = library.kiwami_closest_hit_fields(
+                self,
+                ctypes.byref(batch.fields),
+                ctypes.byref(_hit_fields(records.reshape(-1))),
+                batch.count,
+                None,
+            )
+        check(result, self._device)
+        return Hits(records)
+
+    def any(
+        self,
+        rays,
+        directions=None,
+        *,
+        tmin=0.0,
+        tmax=np.inf,
+        time=0.0,
+        mask=0xFFFFFFFF,
+        cull=None,
+        out=None,
+    ):
+        """Whether each ray hits anything: an array of bool. Arguments as of closest()."""
+        self._prepare()
+        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull)
+        occluded = _flags_for(batch.shape, out)
+        if batch.records is not None:
+            result = library.kiwami_any_hit(
+                self,
+                batch.records.ctypes.data,
+                batch.records.strides[0],
+                occluded.ctypes.data,
+                1,
+                batch.count,
+                None,
+            )
+        else:
+            field = _native.kiwami_output_field(occluded.ctypes.data, 1)
+            result = library.kiwami_any_hit_fields(
+                self, ctypes.byref(batch.fields), ctypes.byref(field), batch.count, None
+            )
+        check(result, self._device)
+        return occluded
+
+    def multi_hit(
+        self,
+        rays,
+        directions=None,
+        *,
+        max_hits=0,
+        tmin=0.0,
+        tmax=np.inf,
+        time=0.0,
+        mask=0xFFFFFFFF,
+        cull=None,
+    ):
+        """The nearest max_hits hits of each ray, or all of them (0), by rising distance.
+
+        Returns hits and offsets: the hits of ray i are hits[offsets[i]:offsets[i + 1]]. Each
+        triangle that a ray crosses is one hit. Other arguments as of closest().
+        """
+        self._prepare()
+        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull)
+        offsets = np.empty(batch.count + 1, np.int64)
+        records = np.empty(batch.count, hit_dtype)
+        while True:
+            result = self._multi_hit(batch, max_hits, records, offsets)
+            if result != _native.KIWAMI_ERROR_CAPACITY:
+                check(result, self._device)
+                return Hits(records[: offsets[-1]]), offsets
+            records = np.empty(offsets[-1], hit_dtype)
+
+    def _multi_hit(self, batch, max_hits, records, offsets):
+        if batch.records is not None:
+            return library.kiwami_multi_hit(
+                self,
+                batch.records.ctypes.data,
+                batch.records.strides[0],
+                batch.count,
+                max_hits,
+                records.ctypes.data,
+                len(records),
+                offsets.ctypes.data,
+                None,
+            )
+        return library.kiwami_multi_hit_fields(
+            self,
+            ctypes.byref(batch.fields),
+            batch.count,
+            max_hits,
+            ctypes.byref(_hit_fields(records)),
+            len(records),
+            offsets.ctypes.data,
+            None,
+        )
+
+    def count(
+        self,
+        rays,
+        directions=None,
+        *,
+        tmin=0.0,
+        tmax=np.inf,
+        time=0.0,
+        mask=0xFFFFFFFF,
+        cull=None,
+    ):
+        """How many hits each ray has; uint32. Arguments as of closest()."""
+        self._prepare()
+        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull)
+        counts = np.empty(batch.shape, np.uint32)
+        if batch.records is not None:
+            result = library.kiwami_count_hits(
+                self,
+                batch.records.ctypes.data,
+                batch.records.strides[0],
+                counts.ctypes.data,
+                4,
+                batch.count,
+                None,
+            )
+        else:
+            field = _native.kiwami_output_field(counts.ctypes.data, 4)
+            result = library.kiwami_count_hits_fields(
+                self, ctypes.byref(batch.fields), ctypes.byref(field), batch.count, None
+            )
+        check(result, self._device)
+        return counts
+
+    def __repr__(self):
+        if self._address is None:
+            return "<kiwami.Scene, closed>"
+        if self._changed:
+            return "<kiwami.Scene, not committed>"
+        return f"<kiwami.Scene of {self.info['triangle_count']} triangles>"
+
+
+def _flags_for(shape, out):
+    if out is None:
+        return np.empty(shape, bool)
+    if out.dtype != bool or out.shape != shape or not out.flags.c_contiguous:
+        raise ValueError(
+            f"out has dtype {out.dtype} and shape {out.shape}, expected contiguous bool of {shape}"
+        )
+    return out

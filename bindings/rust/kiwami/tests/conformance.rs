@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+//! The answers that every binding must give, to the bit.
+use kiwami::{Device, DeviceOptions, ErrorKind, Hit, Isa, Ray, Scene, SceneBuilder};
+
+const VECTORS: &str = include_str!("../../../conformance/vectors.txt");
+
+struct Words<'a>(std::str::SplitAsciiWhitespace<'a>);
+
+impl<'a> Words<'a> {
+    fn word(&mut self) -> &'a str {
+        self.0.next().expect("the vectors end too soon")
+    }
+    fn number(&mut self) -> u64 {
+        self.word().parse().expect("a number")
+    }
+    fn int(&mut self) -> u32 {
+        self.number() as u32
+    }
+    fn float(&mut self) -> f32 {
+        f32::from_bits(self.int())
+    }
+    fn floats(&mut self) -> [f32; 3] {
+        [self.float(), self.float(), self.float()]
+    }
+    fn ray(&mut self) -> Ray {
+        Ray {
+            origin: self.floats(),
+            tmin: self.float(),
+            direction: self.floats(),
+            tmax: self.float(),
+            time: self.float(),
+            mask: self.int(),
+            flags: self.int(),
+            id: self.int(),
+        }
+    }
+    fn hit(&mut self) -> [u32; 9] {
+        std::array::from_fn(|_| self.int())
+    }
+}
+
+fn bits_of(hit: &Hit) -> [u32; 9] {
+    [
+        hit.t.to_bits(),
+        hit.u.to_bits(),
+        hit.v.to_bits(),
+        hit.normal[0].to_bits(),
+        hit.normal[1].to_bits(),
+        hit.normal[2].to_bits(),
+        hit.primitive_id,
+        hit.geometry_id,
+        hit.instance_id,
+    ]
+}
+
+fn check_multi_hit(words: &mut Words, scene: &Scene, rays: &[Ray]) {
+    let max_hits = words.int();
+    let total = words.number();
+    let found = scene.multi_hit(rays, max_hits).unwrap();
+    for offset in &found.offsets {
+        assert_eq!(*offset, words.number());
+    }
+    assert_eq!(found.hits.len() as u64, total);
+    for hit in &found.hits {
+        assert_eq!(bits_of(hit), words.hit());
+    }
+    let counts = scene.count_hits(rays).unwrap();
+    for (ray, count) in counts.iter().enumerate() {
+        let expected = if max_hits == 0 { *count } else { (*count).min(max_hits) };
+        assert_eq!(found.of(ray).len() as u32, expected);
+    }
+}
+
+/// One scene; returns how many answers were compared.
+fn check_scene(words: &mut Words, device: &Device) -> usize {
+    let mut builder = SceneBuilder::new(device).unwrap();
+    assert!(!words.word().is_empty());
+    let mut word = words.word();
+    while word == "mesh" {
+        let (mask, vertex_count, triangle_count) = (words.int(), words.int(), words.int());
+        let vertices: Vec<_> = (0..vertex_count).map(|_| words.floats()).collect();
+        let triangles: Vec<[u32; 3]> =
+            (0..triangle_count).map(|_| [words.int(), words.int(), words.int()]).collect();
+        builder.add_masked_mesh(&vertices, &triangles, mask).unwrap();
+        word = words.word();
+    }
+    assert_eq!(word, "rays");
+    let count = words.int();
+    let rays: Vec<_> = (0..count).map(|_| words.ray()).collect();
+    let scene = builder.commit().unwrap();
+    assert_eq!(words.word(), "closest_hit");
+    for hit in scene.closest_hit(&rays).unwrap() {
+        assert_eq!(bits_of(&hit), words.hit());
+    }
+    assert_eq!(words.word(), "any_hit");
+    for occluded in scene.any_hit(&rays).unwrap() {
+        assert_eq!(u32::from(occluded), words.int());
+    }
+    word = words.word();
+    while word == "multi_hit" {
+        check_multi_hit(words, &scene, &rays);
+        word = words.word();
+    }
+    assert_eq!(word, "end");
+    rays.len()
+}
+
+#[test]
+fn answers_are_the_same_to_the_bit() {
+    for isa in [Isa::Auto, Isa::Scalar] {
+        let device = Device::with_options(DeviceOptions { isa, ..Default::default() }).unwrap();
+        let mut words = Words(VECTORS.split_ascii_whitespace());
+        assert_eq!((words.word(), words.word()), ("kiwami-conformance", "1"));
+        let mut compared = 0;
+        while words.word() == "scene" {
+            compared += check_scene(&mut words, &device);
+        }
+        assert!(compared > 100);
+    }
+}
+
+fn expected_error(name: &str) -> (i32, &'static str) {
+    let line = VECTORS.lines().find(|line| line.starts_with(&format!("error {name} "))).unwrap();
+    let mut parts = line.splitn(4, ' ').skip(2);
+    (parts.next().unwrap().parse().unwrap(), parts.next().unwrap())
+}
+
+#[test]
+fn errors_are_the_same() {
+    let device = Device::new().unwrap();
+    let mut builder = SceneBuilder::new(&device).unwrap();
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let errors = [
+        ("index_beyond_vertices", builder.add_mesh(&corners, &[[0, 1, 3]]).unwrap_err()),
+        ("unknown_geometry", builder.remove(5).unwrap_err()),
+        (
+            "parameter_out_of_bounds",
+            builder.set_parameter(kiwami_sys::KIWAMI_PARAMETER_BIN_COUNT, 1000.0).unwrap_err(),
+        ),
+    ];
+    for (name, error) in errors {
+        assert_eq!((error.result(), error.to_string().as_str()), expected_error(name));
+        assert_eq!(error.kind(), ErrorKind::InvalidArgument);
+    }
+}
+
+#[test]
+fn a_scene_is_traced_by_many_threads() {
+    let device = Device::new().unwrap();
+    let mut builder = SceneBuilder::new(&device).unwrap();
+    builder
+        .add_mesh(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])
+        .unwrap();
+    let scene = builder.commit().unwrap();
+    let rays: Vec<_> =
+        (0..100).map(|i| Ray::new([i as f32 / 50.0, 0.1, -1.0], [0.0, 0.0, 1.0])).collect();
+    let expected = scene.closest_hit(&rays).unwrap();
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| assert_eq!(scene.closest_hit(&rays).unwrap(), expected));
+        }
+    });
+    assert!(scene.edit().commit().is_ok());
+}
