@@ -5,6 +5,7 @@ import ctypes
 import ctypes.util
 import os
 import pathlib
+from typing import Any
 
 from . import _native
 from .errors import error_of
@@ -30,6 +31,10 @@ def _find():
 
 
 def _load():
+    # A wheel has the oneTBB that the library is linked with beside it: once that is there, the
+    # loader takes it by its name.
+    for companion in sorted(pathlib.Path(__file__).parent.glob("libtbb.so*")):
+        ctypes.CDLL(str(companion))
     loaded = ctypes.CDLL(_find())  # lets go of the GIL during each call
     _native.declare(loaded)
     found = loaded.kiwami_abi_version()
@@ -63,7 +68,7 @@ def descriptor(kind, init):
 class Handle:
     """Owns one reference to an object of the library; ends it on close() or with the object."""
 
-    _release = None
+    _release: Any = None
 
     def __init__(self, address):
         self._address = address

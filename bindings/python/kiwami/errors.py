@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the library's results become: exceptions, each also of the built-in kind that fits."""
 
+from typing import Optional
+
 from . import _native
 
 
 class KiwamiError(Exception):
     """An error of the library. ``result`` is its number, the text is the library's sentence."""
 
-    result = None
+    result: Optional[int] = None
 
 
 class InvalidArgumentError(KiwamiError, ValueError):
@@ -56,6 +58,18 @@ class CapacityError(KiwamiError, ValueError):
     """An output is too small for the answers; nothing is lost, what is needed is known."""
 
     result = _native.KIWAMI_ERROR_CAPACITY
+
+
+class IoError(KiwamiError, OSError):
+    """A file could not be read or written."""
+
+    result = _native.KIWAMI_ERROR_IO
+
+
+class InvalidFileError(KiwamiError, ValueError):
+    """A file is none of the library's, of a newer one, or damaged."""
+
+    result = _native.KIWAMI_ERROR_INVALID_FILE
 
 
 _BY_RESULT = {kind.result: kind for kind in KiwamiError.__subclasses__()}

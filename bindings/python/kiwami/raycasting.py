@@ -86,7 +86,9 @@ def _uvs(hits):
 
 
 def _unit(normals):
-    """Normals of length 1. In double: the square of a float's length may be out of its range."""
-    normals = normals.astype(np.float64)
-    length = np.sqrt(np.einsum("...i,...i->...", normals, normals))[..., None]
-    return np.divide(normals, length, out=normals, where=length > 0).astype(np.float32)
+    """Normals of length 1. Lengths in double: the square of a float may be out of its range."""
+    normals = np.ascontiguousarray(normals)
+    x, y, z = (normals[..., axis].astype(np.float64) for axis in range(3))
+    length = np.sqrt(x * x + y * y + z * z)
+    inverse = np.divide(1.0, length, out=np.zeros_like(length), where=length > 0)
+    return (normals * inverse[..., None]).astype(np.float32)

@@ -2,6 +2,7 @@
 """Scenes: meshes under one acceleration structure, and rays against them."""
 
 import ctypes
+import os
 
 import numpy as np
 
@@ -192,6 +193,67 @@ class Scene(Handle):
         """Builds the acceleration structure of what the scene holds now."""
         check(library.kiwami_scene_commit(self), self._device)
         self._changed = False
+
+    def save(self, path):
+        """Saves the committed structure to a file; what is there stays whole until all is written.
+
+        Every float and number is kept: the loaded scene gives the same answers, to the bit.
+        """
+        self._save(path=os.fspath(path))
+
+    def to_bytes(self):
+        """The same as bytes; from_bytes() makes a scene of them. Scenes are pickled so."""
+        data = np.empty(self._save(), np.uint8)
+        self._save(data=data)
+        return data.tobytes()
+
+    def _save(self, path=None, data=None):
+        self._prepare()
+        desc = descriptor(_native.kiwami_save_desc, library.kiwami_save_desc_init)
+        name = None if path is None else ctypes.create_string_buffer(os.fsencode(path))
+        desc.path = ctypes.addressof(name) if name else None
+        if data is not None:
+            desc.data, desc.capacity = data.ctypes.data, data.size
+        size = ctypes.c_uint64()
+        check(library.kiwami_scene_save(self, ctypes.byref(desc), ctypes.byref(size)), self._device)
+        return size.value
+
+    @classmethod
+    def load(cls, path, *, map=False, trusted=False, device=None):
+        """Loads a scene that save() wrote.
+
+        map      use the file where it lies, without a copy; it may not change meanwhile
+        trusted  check nothing: only for files that nobody else could change
+        """
+        name = ctypes.create_string_buffer(os.fsencode(path))
+        flags = _native.KIWAMI_LOAD_MAP if map else 0
+        flags |= _native.KIWAMI_LOAD_TRUSTED if trusted else 0
+        return cls._load(device, flags=flags, path=ctypes.addressof(name))
+
+    @classmethod
+    def from_bytes(cls, data, *, device=None):
+        """A scene from what to_bytes() gave; damaged bytes are an error."""
+        array = np.frombuffer(data, np.uint8)
+        return cls._load(device, data=array.ctypes.data, size=array.size)
+
+    @classmethod
+    def _load(cls, device, **fields):
+        scene = cls.__new__(cls)
+        scene._device = device or default_device()
+        scene._changed, scene._buffers = False, {}
+        desc = descriptor(_native.kiwami_load_desc, library.kiwami_load_desc_init)
+        for name, value in fields.items():
+            setattr(desc, name, value)
+        address = ctypes.c_void_p()
+        check(
+            library.kiwami_scene_load(scene._device, ctypes.byref(desc), ctypes.byref(address)),
+            scene._device,
+        )
+        Handle.__init__(scene, address.value)
+        return scene
+
+    def __reduce__(self):
+        return type(self).from_bytes, (self.to_bytes(),)
 
     def _prepare(self):
         self._require_open()
