@@ -3,7 +3,9 @@
  * Writes the conformance vectors: scenes, rays, and what the library answers, to the bit. Every
  * binding must give the same. The scalar kernels answer, which are the oracle of all others.
  *
- *   make_vectors > vectors.txt
+ *   make_vectors [FILE] > vectors.txt
+ *
+ * FILE receives the scene of several meshes as kiwami_scene_save writes it.
  *
  * The format is explained in README.md. */
 #include <inttypes.h>
@@ -169,7 +171,16 @@ static void print_multi_hits(kiwami_scene* scene, const kiwami_ray* rays, uint32
   print_words(hits, (size_t)offsets[kRayCount], sizeof(kiwami_hit) / sizeof(uint32_t));
 }
 
-static void print_scene(kiwami_device* device, const char* name, const mesh* meshes, int count) {
+static void save_scene(kiwami_scene* scene, const char* path) {
+  kiwami_save_desc desc;
+  require(kiwami_save_desc_init(&desc, sizeof(desc)), "save");
+  desc.path = path;
+  require(kiwami_scene_save(scene, &desc, NULL), "save");
+}
+
+/* path: where to save the scene, or NULL. is_file: whether it is the one that is saved. */
+static void print_scene(kiwami_device* device, const char* name, const mesh* meshes, int count,
+                        int is_file, const char* path) {
   kiwami_scene* scene;
   kiwami_ray rays[kRayCount];
   kiwami_hit hits[kRayCount];
@@ -192,6 +203,8 @@ static void print_scene(kiwami_device* device, const char* name, const mesh* mes
   for (int i = 0; i < kRayCount; ++i) printf("%d\n", occluded[i]);
   print_multi_hits(scene, rays, kMaxHits);
   print_multi_hits(scene, rays, 0);
+  if (is_file) printf("file scene.kiwami\n");
+  if (is_file && path) save_scene(scene, path);
   printf("end\n");
   kiwami_scene_release(scene);
 }
@@ -227,7 +240,7 @@ static void print_errors(kiwami_device* device) {
   kiwami_scene_release(scene);
 }
 
-int main(void) {
+int main(int argument_count, char** arguments) {
   static mesh meshes[2];
   kiwami_device_desc desc;
   kiwami_device* device;
@@ -237,11 +250,11 @@ int main(void) {
   printf("kiwami-conformance 1\n");
   random_state = 2019;
   make_box(&meshes[0], 1.0f, ~0u);
-  print_scene(device, "box", meshes, 1);
+  print_scene(device, "box", meshes, 1, 0, NULL);
   make_soup(&meshes[1], 128, 2u);
-  print_scene(device, "box_and_soup", meshes, 2);
+  print_scene(device, "box_and_soup", meshes, 2, 1, argument_count > 1 ? arguments[1] : NULL);
   meshes[0].triangle_count = 0;
-  print_scene(device, "empty", meshes, 1);
+  print_scene(device, "empty", meshes, 1, 0, NULL);
   print_errors(device);
   kiwami_device_release(device);
   return 0;

@@ -7,6 +7,7 @@ import (
 	"fmt"
 	"math"
 	"os"
+	"path/filepath"
 	"strconv"
 	"strings"
 	"sync"
@@ -96,6 +97,25 @@ func (w *words) checkMultiHit(scene *Scene, rays []Ray) {
 	}
 }
 
+func (w *words) checkFile(device *Device, scene *Scene, rays []Ray) {
+	expected, _ := scene.ClosestHit(rays)
+	saved := filepath.Join(w.t.TempDir(), "scene.kiwami")
+	w.equal(scene.Save(saved), nil)
+	for _, path := range []string{saved, "../conformance/" + w.word()} {
+		for _, flags := range []uint32{0, LoadMap, LoadMap | LoadTrusted} {
+			loaded, err := LoadScene(device, path, flags)
+			w.equal(err, nil)
+			hits, _ := loaded.ClosestHit(rays)
+			for i := range hits {
+				w.equal(bitsOf(hits[i]), bitsOf(expected[i]))
+			}
+			loaded.Close()
+		}
+	}
+	_, err := LoadScene(device, "../conformance/vectors.txt", 0)
+	w.equal(err != nil, true)
+}
+
 func (w *words) checkScene(device *Device) int {
 	scene, err := NewScene(device)
 	w.equal(err, nil)
@@ -134,6 +154,10 @@ func (w *words) checkScene(device *Device) int {
 	}
 	for word = w.word(); word == "multi_hit"; word = w.word() {
 		w.checkMultiHit(scene, rays)
+	}
+	if word == "file" {
+		w.checkFile(device, scene, rays)
+		word = w.word()
 	}
 	w.equal(word, "end")
 	return len(rays)

@@ -4,6 +4,7 @@ package kiwami
 
 /*
 #include <kiwami/kiwami.h>
+#include <stdlib.h>
 */
 import "C"
 
@@ -188,4 +189,47 @@ func (s *Scene) CountHits(rays []Ray) ([]uint32, error) {
 			(*C.uint32_t)(address(counts)), 0, C.size_t(len(rays)), nil)
 	})
 	return counts, err
+}
+
+// Save saves the committed scene; a file of that name stays whole until all is written.
+func (s *Scene) Save(path string) error {
+	name := C.CString(path)
+	defer C.free(unsafe.Pointer(name))
+	return s.call(func() C.kiwami_result {
+		var desc C.kiwami_save_desc
+		C.kiwami_save_desc_init(&desc, C.sizeof_kiwami_save_desc)
+		desc.path = name
+		return C.kiwami_scene_save(s.object, &desc, nil)
+	})
+}
+
+// Ways to load a file.
+const (
+	LoadMap     = uint32(C.KIWAMI_LOAD_MAP)     // use the file where it lies; it may not change
+	LoadTrusted = uint32(C.KIWAMI_LOAD_TRUSTED) // check nothing: only for files of one's own
+)
+
+// LoadScene loads a scene that Save wrote; flags are 0 or Load constants.
+func LoadScene(device *Device, path string, flags uint32) (*Scene, error) {
+	scene, err := NewScene(device)
+	if err != nil {
+		return nil, err
+	}
+	name := C.CString(path)
+	defer C.free(unsafe.Pointer(name))
+	var loaded *C.kiwami_scene
+	err = scene.call(func() C.kiwami_result {
+		var desc C.kiwami_load_desc
+		C.kiwami_load_desc_init(&desc, C.sizeof_kiwami_load_desc)
+		desc.path = name
+		desc.flags = C.uint32_t(flags)
+		return C.kiwami_scene_load(scene.device, &desc, &loaded)
+	})
+	if err != nil {
+		scene.Close()
+		return nil, err
+	}
+	C.kiwami_scene_release(scene.object)
+	scene.object = loaded
+	return scene, nil
 }

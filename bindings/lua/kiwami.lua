@@ -106,6 +106,21 @@ function kiwami.scene(device)
     { object = ffi.gc(made[0], native.kiwami_scene_release), device = device }, Scene)
 end
 
+-- Loads a scene that save wrote. options: device; map (use the file where it lies, which may not
+-- change); trusted (check nothing, for files that nobody else could change).
+function kiwami.load_scene(path, options)
+  options = options or {}
+  local device = options.device or kiwami.device()
+  local desc = descriptor("kiwami_load_desc", native.kiwami_load_desc_init)
+  desc.path = path
+  desc.flags = (options.map and native.KIWAMI_LOAD_MAP or 0)
+    + (options.trusted and native.KIWAMI_LOAD_TRUSTED or 0)
+  local made = ffi.new("kiwami_scene*[1]")
+  check(native.kiwami_scene_load(device.object, desc, made), device.object)
+  return setmetatable(
+    { object = ffi.gc(made[0], native.kiwami_scene_release), device = device }, Scene)
+end
+
 local function check_scene(scene, result) check(result, scene.device.object) end
 
 local function handle(scene)
@@ -163,6 +178,13 @@ end
 
 -- Builds the acceleration structure of what the scene holds now.
 function Scene:commit() check_scene(self, native.kiwami_scene_commit(handle(self))) end
+
+-- Saves the committed scene; a file of that name stays whole until all is written.
+function Scene:save(path)
+  local desc = descriptor("kiwami_save_desc", native.kiwami_save_desc_init)
+  desc.path = path
+  check_scene(self, native.kiwami_scene_save(handle(self), desc, nil))
+end
 
 -- The closest hit of each of count rays, in a zero-based array of kiwami_hit.
 function Scene:closest_hit(rays, count, hits)

@@ -188,6 +188,24 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
   }
   void commit() { check(kiwami_scene_commit(get())); }
 
+  /// Saves the committed scene; a file of that name stays whole until all is written.
+  void save(const std::string& path) const {
+    kiwami_save_desc desc;
+    check(kiwami_save_desc_init(&desc, sizeof(desc)));
+    desc.path = path.c_str();
+    check(kiwami_scene_save(get(), &desc, nullptr));
+  }
+  /// Loads a scene that save() wrote. flags are KIWAMI_LOAD_*.
+  static Scene load(const Device& device, const std::string& path, std::uint32_t flags = 0) {
+    kiwami_load_desc desc;
+    detail::check(kiwami_load_desc_init(&desc, sizeof(desc)), device.get());
+    desc.path = path.c_str();
+    desc.flags = flags;
+    kiwami_scene* scene = nullptr;
+    detail::check(kiwami_scene_load(device.get(), &desc, &scene), device.get());
+    return Scene(scene, device);
+  }
+
   SceneInfo info() const {
     SceneInfo info{};
     info.struct_size = sizeof(info);
@@ -260,6 +278,7 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
   }
 
  private:
+  Scene(kiwami_scene* scene, const Device& device) : Handle(scene), device_(device) {}
   static kiwami_scene* create(const Device& device) {
     kiwami_scene* scene = nullptr;
     detail::check(kiwami_scene_create(device.get(), &scene), device.get());

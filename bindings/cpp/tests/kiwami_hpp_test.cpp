@@ -58,6 +58,23 @@ void check_multi_hit(Words& words, const kiwami::Scene& scene, std::span<const k
   }
 }
 
+void check_file(Words& words, const kiwami::Scene& scene, std::span<const kiwami::Ray> rays) {
+  const std::vector<kiwami::Hit> expected = scene.closest_hit(rays);
+  const std::string saved = testing::TempDir() + "kiwami_hpp_test.kiwami";
+  scene.save(saved);
+  const std::string committed = KIWAMI_VECTORS_FOLDER "/" + words.word();
+  for (const std::string& path : {saved, committed}) {
+    for (const std::uint32_t flags : {0u, std::uint32_t{KIWAMI_LOAD_MAP}}) {
+      const kiwami::Scene loaded = kiwami::Scene::load(scene.device(), path, flags);
+      const std::vector<kiwami::Hit> hits = loaded.closest_hit(rays);
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        EXPECT_EQ(std::bit_cast<Bits>(hits[i]), std::bit_cast<Bits>(expected[i]));
+      }
+    }
+  }
+  EXPECT_THROW(kiwami::Scene::load(scene.device(), KIWAMI_VECTORS), kiwami::Error);
+}
+
 std::size_t check_scene(Words& words, const kiwami::Device& device) {
   kiwami::Scene scene(device);
   words.word();
@@ -78,6 +95,10 @@ std::size_t check_scene(Words& words, const kiwami::Device& device) {
   for (const std::uint8_t occluded : scene.any_hit(rays)) EXPECT_EQ(occluded, words.int32());
   for (word = words.word(); word == "multi_hit"; word = words.word()) {
     check_multi_hit(words, scene, rays);
+  }
+  if (word == "file") {
+    check_file(words, scene, rays);
+    word = words.word();
   }
   EXPECT_EQ(word, "end");
   return rays.size();

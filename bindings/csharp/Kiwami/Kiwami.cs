@@ -173,6 +173,12 @@ public sealed class Scene : SafeHandle {
     GC.KeepAlive(device);
   }
 
+  Scene(IntPtr device, IntPtr scene) : base(IntPtr.Zero, true) {
+    this.device = device;
+    Native.kiwami_device_retain(device);
+    SetHandle(scene);
+  }
+
   public override bool IsInvalid {
     get { return handle == IntPtr.Zero; }
   }
@@ -248,6 +254,38 @@ public sealed class Scene : SafeHandle {
   /// <summary>Builds the acceleration structure of what the scene holds now.</summary>
   public void Commit() {
     Call(Native.kiwami_scene_commit);
+  }
+
+  /// <summary>Saves the committed scene; a file of that name stays whole until all is written.
+  /// </summary>
+  public void Save(string path) {
+    using (var name = new Pin(Encoding.UTF8.GetBytes(path + "\0")))
+    using (var desc = new Pin(new kiwami_save_desc[1])) {
+      Native.kiwami_save_desc_init(desc.Address, (UIntPtr)kiwami_save_desc.Size);
+      var fields = Marshal.PtrToStructure<kiwami_save_desc>(desc.Address);
+      fields.path = name.Address;
+      Marshal.StructureToPtr(fields, desc.Address, false);
+      Call(scene => Native.kiwami_scene_save(scene, desc.Address, IntPtr.Zero));
+    }
+  }
+
+  /// <summary>Loads a scene that Save wrote. map: use the file where it lies; it may not change
+  /// meanwhile. trusted: check nothing, for files that nobody else could change.</summary>
+  public static Scene Load(Device device, string path, bool map = false, bool trusted = false) {
+    using (var name = new Pin(Encoding.UTF8.GetBytes(path + "\0")))
+    using (var desc = new Pin(new kiwami_load_desc[1]))
+    using (var made = new Pin(new IntPtr[1])) {
+      IntPtr owner = device.DangerousGetHandle();
+      Native.kiwami_load_desc_init(desc.Address, (UIntPtr)kiwami_load_desc.Size);
+      var fields = Marshal.PtrToStructure<kiwami_load_desc>(desc.Address);
+      fields.path = name.Address;
+      fields.flags = (map ? Native.KIWAMI_LOAD_MAP : 0) |
+                     (trusted ? Native.KIWAMI_LOAD_TRUSTED : 0);
+      Marshal.StructureToPtr(fields, desc.Address, false);
+      KiwamiException.Check(Native.kiwami_scene_load(owner, desc.Address, made.Address), owner);
+      GC.KeepAlive(device);
+      return new Scene(owner, Marshal.ReadIntPtr(made.Address));
+    }
   }
 
   /// <summary>The closest hit of each ray.</summary>

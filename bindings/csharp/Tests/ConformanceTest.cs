@@ -61,6 +61,22 @@ public class ConformanceTest {
     }
   }
 
+  static void CheckFile(Words words, Device device, Scene scene, Ray[] rays) {
+    string folder = Path.GetDirectoryName(Environment.GetEnvironmentVariable("KIWAMI_VECTORS"));
+    string saved = Path.GetTempFileName();
+    scene.Save(saved);
+    Hit[] expected = scene.ClosestHit(rays);
+    foreach (string path in new[] { saved, Path.Combine(folder, words.Word()) }) {
+      foreach (bool map in new[] { false, true }) {
+        using (Scene loaded = Scene.Load(device, path, map, map)) {
+          CollectionAssert.AreEqual(expected, loaded.ClosestHit(rays));
+        }
+      }
+    }
+    File.Delete(saved);
+    Assert.Throws<KiwamiException>(() => Scene.Load(device, Path.Combine(folder, "vectors.txt")));
+  }
+
   static int CheckScene(Words words, Device device) {
     using (var scene = new Scene(device)) {
       words.Word();
@@ -83,6 +99,10 @@ public class ConformanceTest {
       foreach (bool occluded in scene.AnyHit(rays)) Assert.AreEqual(words.Int() == 1, occluded);
       for (word = words.Word(); word == "multi_hit"; word = words.Word()) {
         CheckMultiHit(words, scene, rays);
+      }
+      if (word == "file") {
+        CheckFile(words, device, scene, rays);
+        word = words.Word();
       }
       Assert.AreEqual("end", word);
       return rays.Length;

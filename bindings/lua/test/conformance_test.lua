@@ -59,6 +59,22 @@ local function read_mesh(words, scene)
                    triangle_numbers = 3 * triangle_count })
 end
 
+local function check_file(words, device, scene, rays, count)
+  local saved = os.tmpname()
+  scene:save(saved)
+  local expected = as_words(scene:closest_hit(rays, count))
+  for _, path in ipairs({ saved, "../conformance/" .. words.word() }) do
+    for _, map in ipairs({ false, true }) do
+      local loaded = kiwami.load_scene(path, { device = device, map = map, trusted = map })
+      local hits = as_words(loaded:closest_hit(rays, count))
+      for i = 0, 9 * count - 1 do equal(hits[i], expected[i], path) end
+      loaded:close()
+    end
+  end
+  os.remove(saved)
+  equal(pcall(kiwami.load_scene, "../conformance/vectors.txt"), false)
+end
+
 local function check_scene(words, device)
   local scene = kiwami.scene(device)
   words.word()
@@ -79,6 +95,10 @@ local function check_scene(words, device)
   word = words.word()
   while word == "multi_hit" do
     check_multi_hit(words, scene, rays, count)
+    word = words.word()
+  end
+  if word == "file" then
+    check_file(words, device, scene, rays, count)
     word = words.word()
   end
   equal(word, "end")

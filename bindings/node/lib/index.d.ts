@@ -67,6 +67,11 @@ export class Scene {
   setParameter(parameter: number, value: number): void;
   commit(): Promise<void>;
   commitSync(): void;
+  save(path: string): void;
+  static load(
+    path: string,
+    options?: { device?: Device; map?: boolean; trusted?: boolean },
+  ): Scene;
   closestHit(rays: Rays, hits?: Hits): Hits;
   anyHit(rays: Rays, occluded?: Uint8Array): Uint8Array;
   multiHit(rays: Rays, maxHits?: number): MultiHits;

@@ -39,6 +39,19 @@ class Handle {
     return this.object;
   }
 
+  /** Owns another object in place of this one. */
+  replace(object) {
+    native.kiwami_scene_release(this.object);
+    released.unregister(this);
+    this.object = object;
+    const { device } = this;
+    this.release = () => {
+      native.kiwami_scene_release(object);
+      native.kiwami_device_release(device);
+    };
+    released.register(this, this.release, this);
+  }
+
   /** Lets go of the object at once. Closing twice is allowed. */
   close() {
     if (!this.object) return;
@@ -170,6 +183,7 @@ function typed(Kind, values, name) {
 
 /** Meshes under one acceleration structure. Changes take effect with commit(). */
 class Scene extends Handle {
+  /** An empty scene. */
   constructor(device = new Device()) {
     const object = receiveHandle((target) =>
       check(native.kiwami_scene_create(device.address, target), device.address),
@@ -185,6 +199,30 @@ class Scene extends Handle {
 
   check(result) {
     check(result, this.device);
+  }
+
+  /** Saves the committed scene; a file of that name stays whole until all is written. */
+  save(path) {
+    withDescriptor('kiwami_save_desc', native.kiwami_save_desc_init, { path }, (desc) =>
+      this.check(native.kiwami_scene_save(this.address, desc, null)),
+    );
+  }
+
+  /** Loads a scene that save() wrote. map: use the file where it lies, which may not change;
+   * trusted: check nothing, for files that nobody else could change. */
+  static load(path, { device = new Device(), map = false, trusted = false } = {}) {
+    const scene = new Scene(device);
+    const flags =
+      (map ? constants.KIWAMI_LOAD_MAP : 0) | (trusted ? constants.KIWAMI_LOAD_TRUSTED : 0);
+    const loaded = withDescriptor(
+      'kiwami_load_desc',
+      native.kiwami_load_desc_init,
+      { path, flags },
+      (desc) =>
+        receiveHandle((target) => scene.check(native.kiwami_scene_load(scene.device, desc, target))),
+    );
+    scene.replace(loaded);
+    return scene;
   }
 
   /** Adds a mesh, copied: three numbers a vertex, three a triangle. Returns the number that hits

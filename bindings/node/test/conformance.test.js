@@ -4,6 +4,7 @@
 
 const assert = require('node:assert');
 const fs = require('node:fs');
+const os = require('node:os');
 const path = require('node:path');
 const test = require('node:test');
 const { Device, Hits, KiwamiError, Rays, Scene, constants } = require('..');
@@ -39,6 +40,22 @@ function checkMultiHit(words, scene, rays) {
   });
 }
 
+function checkFile(words, device, scene, rays) {
+  const folder = path.join(__dirname, '../../conformance');
+  const saved = path.join(os.tmpdir(), `kiwami-${process.pid}.kiwami`);
+  scene.save(saved);
+  const expected = scene.closestHit(rays).words;
+  for (const file of [saved, path.join(folder, words.word())]) {
+    for (const map of [false, true]) {
+      const loaded = Scene.load(file, { device, map, trusted: map });
+      assert.deepStrictEqual(loaded.closestHit(rays).words, expected);
+      loaded.close();
+    }
+  }
+  fs.unlinkSync(saved);
+  assert.throws(() => Scene.load(path.join(folder, 'vectors.txt')), KiwamiError);
+}
+
 async function checkScene(words, device) {
   const scene = new Scene(device);
   words.word();
@@ -58,6 +75,10 @@ async function checkScene(words, device) {
   assert.deepStrictEqual([...scene.anyHit(rays)], words.numbers(rays.count));
   for (word = words.word(); word === 'multi_hit'; word = words.word()) {
     checkMultiHit(words, scene, rays);
+  }
+  if (word === 'file') {
+    checkFile(words, device, scene, rays);
+    word = words.word();
   }
   assert.strictEqual(word, 'end');
   scene.close();

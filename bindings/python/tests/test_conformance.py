@@ -23,6 +23,7 @@ def check_scene(scene, expected, rays):
             assert (scene.count(rays) == np.diff(offsets)).all()
 
 
+
 @pytest.mark.parametrize("isa", ["auto", "scalar"])
 def test_answers_are_the_same_to_the_bit(isa):
     device = kiwami.Device(isa=isa, validate=True)
@@ -31,7 +32,10 @@ def test_answers_are_the_same_to_the_bit(isa):
         scene = kiwami.Scene(device=device)
         for mask, vertices, faces in expected["meshes"]:
             scene.add(vertices, faces, mask=mask)
-        check_scene(scene, expected, expected["rays"].view(kiwami.ray_dtype).reshape(-1))
+        rays = expected["rays"].view(kiwami.ray_dtype).reshape(-1)
+        check_scene(scene, expected, rays)
+        if "file" in expected:
+            check_scene(kiwami.Scene.load(expected["file"], device=device), expected, rays)
         compared += len(expected["rays"])
     assert compared > 100
 

@@ -52,6 +52,8 @@ def _scene(words):
         elif word == "multi_hit":
             max_hits, total = words.number(), words.number()
             scene["multi_hit"].append((max_hits, words.numbers(count + 1), words.words(total, 9)))
+        elif word == "file":
+            scene["file"] = PATH.parent / words.word()
         else:
             assert word == "end"
             return scene

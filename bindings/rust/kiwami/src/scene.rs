@@ -3,7 +3,9 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::ray::{Hit, Ray};
 use kiwami_sys as sys;
+use std::ffi::CString;
 use std::mem::{size_of, MaybeUninit};
+use std::path::Path;
 use std::ptr::{null, null_mut};
 
 /// Named points of the pipeline that builds the tree.
@@ -145,6 +147,44 @@ impl Scene {
         SceneBuilder { object: self.object }
     }
 
+    /// Saves the scene; a file of that name stays whole until all is written.
+    pub fn save(&self, path: &Path) -> Result<(), Error> {
+        let path = c_path(path);
+        let mut desc = MaybeUninit::<sys::kiwami_save_desc>::uninit();
+        // SAFETY: the init function fills the descriptor; path outlives the call.
+        self.object.device.check(unsafe {
+            sys::kiwami_save_desc_init(desc.as_mut_ptr(), size_of::<sys::kiwami_save_desc>());
+            let mut desc = desc.assume_init();
+            desc.path = path.as_ptr();
+            sys::kiwami_scene_save(self.object.scene, &desc, null_mut())
+        })
+    }
+
+    /// Loads a scene that `save` wrote, by copy, checking every byte.
+    pub fn load(device: &Device, path: &Path) -> Result<Self, Error> {
+        // SAFETY: nothing of the file is used after the call.
+        unsafe { Self::load_with(device, path, 0) }
+    }
+
+    /// Loads with `kiwami_sys::KIWAMI_LOAD_*`.
+    ///
+    /// # Safety
+    /// With MAP the file may not be changed or cut while the scene lives. With TRUSTED its bytes
+    /// must be those that `save` wrote.
+    pub unsafe fn load_with(device: &Device, path: &Path, flags: u32) -> Result<Self, Error> {
+        let path = c_path(path);
+        let mut desc = MaybeUninit::<sys::kiwami_load_desc>::uninit();
+        let mut scene = null_mut();
+        device.check({
+            sys::kiwami_load_desc_init(desc.as_mut_ptr(), size_of::<sys::kiwami_load_desc>());
+            let mut desc = desc.assume_init();
+            desc.path = path.as_ptr();
+            desc.flags = flags;
+            sys::kiwami_scene_load(device.object, &desc, &mut scene)
+        })?;
+        Ok(Self { object: Object { device: device.clone(), scene } })
+    }
+
     /// What the acceleration structure is made of.
     pub fn info(&self) -> Result<sys::kiwami_scene_info, Error> {
         // SAFETY: plain numbers, for which zeros are values.
@@ -244,4 +284,9 @@ impl Scene {
         })?;
         Ok(counts)
     }
+}
+
+/// A path for C. One with a 0 in it names no file, as the empty one does not.
+fn c_path(path: &Path) -> CString {
+    CString::new(path.to_string_lossy().as_bytes()).unwrap_or_default()
 }

@@ -71,6 +71,26 @@ fn check_multi_hit(words: &mut Words, scene: &Scene, rays: &[Ray]) {
     }
 }
 
+fn check_file(words: &mut Words, scene: &Scene, rays: &[Ray]) {
+    let expected: Vec<_> = scene.closest_hit(rays).unwrap().iter().map(bits_of).collect();
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../conformance");
+    let saved = std::env::temp_dir().join(format!("kiwami-{}.kiwami", std::process::id()));
+    scene.save(&saved).unwrap();
+    for path in [&saved, &folder.join(words.word())] {
+        let loaded = Scene::load(scene.device(), path).unwrap();
+        // SAFETY: nobody changes the file.
+        let mapped = unsafe {
+            Scene::load_with(scene.device(), path, kiwami_sys::KIWAMI_LOAD_MAP).unwrap()
+        };
+        for again in [loaded, mapped] {
+            let hits = again.closest_hit(rays).unwrap();
+            assert!(hits.iter().map(bits_of).eq(expected.iter().copied()));
+        }
+    }
+    std::fs::remove_file(&saved).unwrap();
+    assert!(Scene::load(scene.device(), &folder.join("vectors.txt")).is_err());
+}
+
 /// One scene; returns how many answers were compared.
 fn check_scene(words: &mut Words, device: &Device) -> usize {
     let mut builder = SceneBuilder::new(device).unwrap();
@@ -99,6 +119,10 @@ fn check_scene(words: &mut Words, device: &Device) -> usize {
     word = words.word();
     while word == "multi_hit" {
         check_multi_hit(words, &scene, &rays);
+        word = words.word();
+    }
+    if word == "file" {
+        check_file(words, &scene, &rays);
         word = words.word();
     }
     assert_eq!(word, "end");

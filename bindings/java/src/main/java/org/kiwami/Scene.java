@@ -7,6 +7,7 @@ import java.lang.ref.Cleaner;
 import java.lang.ref.Reference;
 import java.nio.Buffer;
 import java.nio.ByteBuffer;
+import java.nio.charset.StandardCharsets;
 
 /**
  * Meshes under one acceleration structure. Changes take effect with commit(). A committed scene can
@@ -34,6 +35,65 @@ public final class Scene implements AutoCloseable {
               Native.kiwami_scene_release(ownedScene);
               Native.kiwami_device_release(ownedDevice);
             });
+  }
+
+  private Scene(Pointer device, Pointer object) {
+    this.device = device;
+    this.object = object;
+    Native.kiwami_device_retain(device);
+    cleanable =
+        Device.CLEANER.register(
+            this,
+            () -> {
+              Native.kiwami_scene_release(object);
+              Native.kiwami_device_release(device);
+            });
+  }
+
+  private static Memory text(String value) {
+    byte[] bytes = value.getBytes(StandardCharsets.UTF_8);
+    Memory memory = new Memory(bytes.length + 1L);
+    memory.write(0, bytes, 0, bytes.length);
+    memory.setByte(bytes.length, (byte) 0);
+    return memory;
+  }
+
+  /** Saves the committed scene; a file of that name stays whole until all is written. */
+  public void save(String path) {
+    Memory name = text(path);
+    Memory desc = new Memory(Native.SaveDesc.STRUCT_BYTES);
+    check(Native.kiwami_save_desc_init(desc, desc.size()));
+    desc.setPointer(Native.SaveDesc.PATH, name);
+    check(Native.kiwami_scene_save(object(), desc, null));
+    Reference.reachabilityFence(name);
+  }
+
+  /** Loads a scene that save() wrote, by copy, checking every byte. */
+  public static Scene load(Device device, String path) {
+    return load(device, path, false, false);
+  }
+
+  /**
+   * Loads a scene that save() wrote.
+   *
+   * @param map use the file where it lies; it may not change meanwhile
+   * @param trusted check nothing: only for files that nobody else could change
+   */
+  public static Scene load(Device device, String path, boolean map, boolean trusted) {
+    Memory name = text(path);
+    Memory desc = new Memory(Native.LoadDesc.STRUCT_BYTES);
+    KiwamiException.check(Native.kiwami_load_desc_init(desc, desc.size()), device.object());
+    desc.setPointer(Native.LoadDesc.PATH, name);
+    desc.setInt(
+        Native.LoadDesc.FLAGS,
+        (map ? Native.KIWAMI_LOAD_MAP : 0) | (trusted ? Native.KIWAMI_LOAD_TRUSTED : 0));
+    Memory made = new Memory(com.sun.jna.Native.POINTER_SIZE);
+    KiwamiException.check(
+        Native.kiwami_scene_load(device.object(), desc, made), device.object());
+    Reference.reachabilityFence(name);
+    Scene scene = new Scene(device.object(), made.getPointer(0));
+    Reference.reachabilityFence(device);
+    return scene;
   }
 
   /** Lets go of the scene. Closing twice is allowed; no other thread may be tracing it. */

@@ -9,6 +9,7 @@ import static org.junit.Assert.assertTrue;
 import java.io.IOException;
 import java.nio.charset.StandardCharsets;
 import java.nio.file.Files;
+import java.nio.file.Path;
 import java.nio.file.Paths;
 import java.util.Scanner;
 import org.junit.Test;
@@ -47,6 +48,25 @@ public class ConformanceTest {
     }
   }
 
+  private static void checkFile(Scanner words, Device device, Scene scene, Rays rays)
+      throws IOException {
+    Path folder = Paths.get(System.getProperty("kiwami.vectors")).getParent();
+    Path saved = Files.createTempFile("scene", ".kiwami");
+    scene.save(saved.toString());
+    byte[] expected = bytes(scene.closestHit(rays));
+    for (Path path : new Path[] {saved, folder.resolve(words.next())}) {
+      for (boolean map : new boolean[] {false, true}) {
+        try (Scene loaded = Scene.load(device, path.toString(), map, map)) {
+          assertArrayEquals(expected, bytes(loaded.closestHit(rays)));
+        }
+      }
+    }
+    Files.delete(saved);
+    assertThrows(
+        KiwamiException.class,
+        () -> Scene.load(device, folder.resolve("vectors.txt").toString()));
+  }
+
   private static void readMesh(Scanner words, Scene scene) {
     int mask = word(words);
     float[] vertices = new float[3 * word(words)];
@@ -60,7 +80,7 @@ public class ConformanceTest {
     scene.addMesh(vertices, triangles, mask);
   }
 
-  private static int checkScene(Scanner words, Device device) {
+  private static int checkScene(Scanner words, Device device) throws IOException {
     try (Scene scene = new Scene(device)) {
       words.next();
       String name = words.next();
@@ -84,6 +104,10 @@ public class ConformanceTest {
       }
       for (name = words.next(); name.equals("multi_hit"); name = words.next()) {
         checkMultiHit(words, scene, rays);
+      }
+      if (name.equals("file")) {
+        checkFile(words, device, scene, rays);
+        name = words.next();
       }
       assertEquals("end", name);
       return rays.count();
