@@ -38,7 +38,7 @@ std::string rendered(const TemporaryFolder& folder, const std::vector<std::strin
 }
 
 TEST(Command, ExplainsEachOfItsCommands) {
-  for (const char* command : {"info", "render", "verify", "demo", "bench", "inspect"}) {
+  for (const char* command : {"info", "build", "render", "verify", "demo", "bench", "inspect"}) {
     const CommandResult result = run_command({command, "--help"});
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_NE(result.output.find("Usage:"), std::string::npos) << command;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -77,6 +78,33 @@ nlohmann::ordered_json collect() {
   return report;
 }
 
+nlohmann::ordered_json collect_file(const std::string& path) {
+  const Device device;
+  const kiwami_file_info info = file_info_of(device, path);
+  constexpr const char* kFits[] = {
+      "fits", "fits, but its width has no kernels of this instruction set: scalar ones trace it",
+      "does not fit: a newer version wrote it"};
+  nlohmann::ordered_json report;
+  report["kind"] = info.kind == KIWAMI_FILE_SCENE ? "scene" : "tree";
+  report["fit"] = kFits[std::min<uint32_t>(info.fit, 2)];
+  report["format_version"] = info.format_version;
+  report["library_version"] = version_text(info.library_version);
+  report["bvh_width"] = info.bvh_width;
+  report["sections"] = info.section_count;
+  report["bytes"] = info.file_bytes;
+  report["triangles"] = info.triangle_count;
+  report["nodes"] = info.node_count;
+  return report;
+}
+
+void print_file(const nlohmann::ordered_json& report) {
+  for (const auto& [key, value] : report.items()) {
+    const std::string text =
+        value.is_string() ? value.get<std::string>() : grouped(value.get<uint64_t>());
+    std::printf("%-16s %s\n", key.c_str(), text.c_str());
+  }
+}
+
 void print_text(const nlohmann::ordered_json& report) {
   const auto line = [](const char* name, const std::string& value) {
     std::printf("%-16s %s\n", name, value.c_str());
@@ -105,11 +133,15 @@ void print_text(const nlohmann::ordered_json& report) {
 void add_info_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("info", "Say what this build and this machine can do");
   const auto as_json = std::make_shared<bool>(false);
+  const auto path = std::make_shared<std::string>();
+  command->add_option("FILE", *path, "A .kiwami file: say what it is instead, and whether it fits");
   command->add_flag("--json", *as_json, "Print JSON");
-  command->callback([as_json, &exit_code] {
-    const nlohmann::ordered_json report = collect();
+  command->callback([as_json, path, &exit_code] {
+    const nlohmann::ordered_json report = path->empty() ? collect() : collect_file(*path);
     if (*as_json) {
       std::printf("%s\n", report.dump(2).c_str());
+    } else if (!path->empty()) {
+      print_file(report);
     } else {
       print_text(report);
     }

@@ -11,6 +11,7 @@
 #include "kiwami/renderer.h"
 #include "kiwami/view_options.h"
 #include "measure/camera.h"
+#include "scene/kiwami_reader.h"
 #include "scene/procedural.h"
 
 namespace kiwami::tools {
@@ -59,12 +60,23 @@ void print_build(const SceneFile& file, const Device& device, const kiwami_scene
               info.node_fill * 100.0, info.leaf_fill * 100.0);
 }
 
+/// With the tree of the file, if it is one that was saved with its tree.
+std::unique_ptr<BuiltScene> make_scene(const RenderOptions& options, const Device& device,
+                                       const SceneFile& file) {
+  if (is_saved_scene(options.scene)) {
+    return std::make_unique<BuiltScene>(device, options.scene, KIWAMI_LOAD_MAP);
+  }
+  return std::make_unique<BuiltScene>(device, file,
+                                      options.pipeline.build_options(options.trace.bvh_width));
+}
+
 void run_render(const RenderOptions& options) {
   check_options(options);
   const Size size = parse_size("--size", options.size);
   const Device device = options.trace.make_device();
   const SceneFile file = flatten(load_scene(options.scene));
-  const BuiltScene scene(device, file, options.pipeline.build_options(options.trace.bvh_width));
+  const std::unique_ptr<BuiltScene> built = make_scene(options, device, file);
+  const BuiltScene& scene = *built;
   print_build(file, device, scene.info());
 
   const Box box = bounds_of(scene.info());
@@ -99,9 +111,11 @@ void add_render_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("render", "Render a picture of a scene");
   const auto options = std::make_shared<RenderOptions>();
   command
-      ->add_option(
-          "SCENE", options->scene,
-          "An .obj, .tri or .ins file, each also with .gz, or one of " + procedural_scene_names())
+      ->add_option("SCENE", options->scene,
+                   "An .obj, .tri or .ins file, each also with .gz, a .kiwami file, whose tree is "
+                   "taken as it "
+                   "was built, or one of " +
+                       procedural_scene_names())
       ->required();
   command->add_option("-o,--output", options->output, "The picture: a .png or .ppm file")
       ->required();

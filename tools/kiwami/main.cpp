@@ -22,7 +22,7 @@ int fail(std::string sentence) {
 /// CLI11 says of an unknown command no more than that one is required.
 void check_command_name(const CLI::App& app, int argc, char** argv) {
   const std::string expected =
-      ", expected info, render, verify, demo, bench or inspect; see kiwami --help";
+      ", expected info, build, render, verify, demo, bench or inspect; see kiwami --help";
   if (argc < 2) throw kiwami::tools::UsageError("no command is given" + expected);
   const std::string name = argv[1];
   const auto commands =
@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
   kiwami::tools::add_info_command(app, exit_code);
+  kiwami::tools::add_build_command(app, exit_code);
   kiwami::tools::add_render_command(app, exit_code);
   kiwami::tools::add_verify_command(app, exit_code);
   kiwami::tools::add_demo_command(app, exit_code);

@@ -136,6 +136,29 @@ BuiltScene::BuiltScene(const Device& device, const SceneFile& file, const BuildO
   }
 }
 
+BuiltScene::BuiltScene(const Device& device, const std::string& path, uint32_t load_flags) {
+  kiwami_load_desc desc;
+  check(kiwami_load_desc_init(&desc, sizeof desc), device.get());
+  desc.path = path.c_str();
+  desc.flags = load_flags;
+  check(kiwami_scene_load(device.get(), &desc, &scene_), device.get());
+  try {
+    read_info();
+  } catch (...) {
+    kiwami_scene_release(scene_);
+    throw;
+  }
+}
+
+uint64_t BuiltScene::save(const std::string& path) const {
+  kiwami_save_desc desc;
+  check(kiwami_save_desc_init(&desc, sizeof desc), nullptr);
+  desc.path = path.c_str();
+  uint64_t bytes = 0;
+  check(kiwami_scene_save(scene_, &desc, &bytes), nullptr);
+  return bytes;
+}
+
 void BuiltScene::set_parameters(kiwami_device* device, const BuildOptions& options) {
   check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_BVH_WIDTH, options.bvh_width), device);
   check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_MERGE_LEAVES,
@@ -167,6 +190,10 @@ void BuiltScene::attach(kiwami_device* device, const Mesh& mesh) {
 
 void BuiltScene::commit() {
   check(kiwami_scene_commit(scene_), nullptr);
+  read_info();
+}
+
+void BuiltScene::read_info() {
   info_.struct_size = sizeof info_;
   check(kiwami_scene_get_info(scene_, &info_), nullptr);
 }
@@ -299,6 +326,16 @@ Parameter parse_parameter(const std::string& text) {
         "the value of the parameter '" + name + "' is '" + value_text + "', expected a number");
   }
   return {number, *value};
+}
+
+kiwami_file_info file_info_of(const Device& device, const std::string& path) {
+  kiwami_load_desc desc;
+  check(kiwami_load_desc_init(&desc, sizeof desc), device.get());
+  desc.path = path.c_str();
+  kiwami_file_info info{};
+  info.struct_size = sizeof info;
+  check(kiwami_file_get_info(device.get(), &desc, &info), device.get());
+  return info;
 }
 
 std::vector<uint32_t> available_isas() {

@@ -86,11 +86,15 @@ class BuiltScene : public Tracer {
  public:
   /// `file` must have no instances (see flatten).
   BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options = {});
+  /// A scene that was saved, with its tree; `load_flags` are KIWAMI_LOAD_*. It needs no other file.
+  BuiltScene(const Device& device, const std::string& path, uint32_t load_flags);
   ~BuiltScene() override { kiwami_scene_release(scene_); }
   BuiltScene(const BuiltScene&) = delete;
   BuiltScene& operator=(const BuiltScene&) = delete;
 
   const kiwami_scene_info& info() const { return info_; }
+  /// Saves it with its tree, and tells the size of the file.
+  uint64_t save(const std::string& path) const;
   void closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const override;
   void any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
   /// The same with one call a ray, each on the calling thread.
@@ -107,6 +111,7 @@ class BuiltScene : public Tracer {
   void set_parameters(kiwami_device* device, const BuildOptions& options);
   void attach(kiwami_device* device, const Mesh& mesh);
   void commit();
+  void read_info();
   kiwami_bvh_measures measure(const kiwami_bvh* bvh, uint32_t flags,
                               kiwami_bvh_node_measures* nodes) const;
 
@@ -115,6 +120,9 @@ class BuiltScene : public Tracer {
   double node_cost_ = 1.0;
   double leaf_cost_ = 1.0;
 };
+
+/// What the beginning of a file that was saved says.
+kiwami_file_info file_info_of(const Device& device, const std::string& path);
 
 /// The KIWAMI_ISA_* that can run here, from scalar to the best.
 std::vector<uint32_t> available_isas();

@@ -3,6 +3,7 @@
 
 #include "scene/binary_readers.h"
 #include "scene/byte_reader.h"
+#include "scene/kiwami_reader.h"
 #include "scene/obj_reader.h"
 #include "scene/procedural.h"
 
@@ -74,10 +75,13 @@ SceneFile load_scene(const fs::path& path) {
     scene = read_tri(path);
   } else if (extension == ".ins") {
     scene = read_ins(path);
+  } else if (is_saved_scene(path)) {
+    scene = read_saved_scene(path);
   } else {
-    throw SceneError("the format of '" + path.string() +
-                     "' is unknown, expected .obj, .tri or .ins, each also with .gz, or one of " +
-                     procedural_scene_names());
+    throw SceneError(
+        "the format of '" + path.string() +
+        "' is unknown, expected .obj, .tri or .ins, each also with .gz, .kiwami, or one of " +
+        procedural_scene_names());
   }
   if (scene.triangle_count() == 0) throw SceneError("'" + path.string() + "' holds no triangles");
   return scene;

@@ -53,8 +53,9 @@ struct SceneFile {
   uint64_t triangle_count() const;
 };
 
-/// Reads an .obj, .tri or .ins file, each also with .gz, or makes a procedural scene by its name
-/// (see procedural.h). Indices are checked; vertices may be NaN. Throws SceneError.
+/// Reads an .obj, .tri or .ins file, each also with .gz, or a .kiwami file, or makes a procedural
+/// scene by its name (see procedural.h). Indices are checked; vertices may be NaN. Throws
+/// SceneError.
 SceneFile load_scene(const std::filesystem::path& path);
 
 /// The same world without instances: mesh i of the result is instance i with its vertices moved.
