@@ -20,6 +20,9 @@
 extern "C" {
 #endif
 
+/* The most instances, each in the scene of the one before, that lead to a triangle. */
+#define KIWAMI_MAX_INSTANCE_DEPTH 8
+
 enum {
   /* Ignore triangles seen from behind. A triangle is seen from its front when its vertices run
    * counter-clockwise: when its normal (b - a) x (c - a) points against the ray. */
@@ -93,6 +96,11 @@ typedef struct kiwami_hit_fields {
 typedef struct kiwami_query {
   uint32_t struct_size; /* bytes of this struct, set by kiwami_query_init */
   uint32_t flags;       /* KIWAMI_QUERY_* */
+  /* Receives the whole path of each closest hit: KIWAMI_MAX_INSTANCE_DEPTH uint32 a ray, the
+   * numbers of the instances from the outermost on, KIWAMI_INVALID_ID beyond the depth of the hit
+   * and for a miss. NULL: not wanted. Not used by kiwami_any_hit. */
+  uint32_t* instance_paths;
+  uint64_t instance_path_stride; /* bytes from one ray's path to the next; 0: 32 */
 } kiwami_query;
 
 enum {
@@ -100,7 +108,7 @@ enum {
   KIWAMI_QUERY_CALLING_THREAD = 1u << 0
 };
 
-/* Fill a struct with its defaults: no fields; no flags.
+/* Fill a struct with its defaults: no fields; no flags, nothing more than the answers.
  *   size      sizeof the struct as the caller knows it
  *   errors    INVALID_ARGUMENT: the pointer is NULL, or size is below 8
  * [any thread]; since 0.1 */

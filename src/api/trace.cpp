@@ -19,14 +19,30 @@ constexpr kiwami_ray_fields kNoRays{};
 constexpr kiwami_hit_fields kNoHits{};
 constexpr kiwami_query kDefaultQuery{};
 
-bool is_on_calling_thread(const kiwami_query* query) {
-  if (!query) return false;
+constexpr uint32_t kQueryFlags = KIWAMI_QUERY_CALLING_THREAD;
+constexpr size_t kInstancePathSize = KIWAMI_MAX_INSTANCE_DEPTH * sizeof(uint32_t);
+
+/// What a checked query asks for.
+TraceRequest request_of(const kiwami_query& query) {
+  return {{reinterpret_cast<unsigned char*>(query.instance_paths),
+           query.instance_path_stride ? static_cast<size_t>(query.instance_path_stride)
+                                      : kInstancePathSize},
+          (query.flags & KIWAMI_QUERY_CALLING_THREAD) != 0};
+}
+
+/// What a query asks for of count rays.
+TraceRequest read_query(const kiwami_query* query, const CommittedScene& committed, size_t count) {
+  if (!query) return request_of(kDefaultQuery);
   const kiwami_query checked = read_descriptor(query, kMinimumStructSize, "query", kDefaultQuery);
-  if (checked.flags & ~uint32_t{KIWAMI_QUERY_CALLING_THREAD}) {
+  if (checked.flags & ~kQueryFlags) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "query.flags is 0x%x, expected KIWAMI_QUERY_* bits",
                 checked.flags);
   }
-  return (checked.flags & KIWAMI_QUERY_CALLING_THREAD) != 0;
+  if (committed.validates_arguments() && checked.instance_paths && count != 0) {
+    check_array("query.instance_paths", checked.instance_paths,
+                static_cast<size_t>(checked.instance_path_stride), kInstancePathSize, count);
+  }
+  return request_of(checked);
 }
 
 void check_output_field(const char* name, const kiwami_output_field& field, size_t count) {
@@ -96,30 +112,29 @@ kiwami_ray_fields read_ray_fields(const kiwami_ray_fields* fields, size_t count)
 /// Answers a call of few rays with which nothing is wrong, and returns true; false leaves it to
 /// trace_array. A single ray takes so little time that what trace_array looks at, and the
 /// registers that it saves for the case of an exception, would be a tenth of it.
-inline bool answer_few(const kiwami_scene* scene, TraversalKernel TraversalKernels::*kernel,
-                       const RayBatch& batch, const kiwami_query* query) {
+inline bool answer_few(const kiwami_scene* scene, const Question& question, const RayBatch& batch,
+                       const kiwami_query* query) {
   if (!scene || batch.count >= kParallelCount) return false;
   const CommittedScene* committed = object_of(scene)->committed();
   if (!committed || committed->validates_arguments()) return false;
-  if (query && (query->struct_size != sizeof(kiwami_query) ||
-                (query->flags & ~uint32_t{KIWAMI_QUERY_CALLING_THREAD}) != 0)) {
+  if (query && (query->struct_size != sizeof(kiwami_query) || (query->flags & ~kQueryFlags) != 0)) {
     return false;
   }
   const DefaultFloatEnvironment environment;
-  (committed->kernels().*kernel)(committed->view(), batch);
+  question.answer(*committed, batch, request_of(query ? *query : kDefaultQuery).options);
   return true;
 }
 
 /// Traces an array of rays to an array of answers of answer_size bytes each.
-void trace_array(const CommittedScene& committed, TraversalKernel kernel, const RayBatch& batch,
+void trace_array(const CommittedScene& committed, const Question& question, const RayBatch& batch,
                  size_t answer_size, const char* answers_name, const kiwami_query* query) {
-  const bool on_calling_thread = is_on_calling_thread(query);
+  const TraceRequest request = read_query(query, committed, batch.count);
   if (batch.count == 0) return;
   if (committed.validates_arguments()) {
     check_array("rays", batch.rays, batch.ray_stride, sizeof(kiwami_ray), batch.count);
     check_array(answers_name, batch.answers, batch.answer_stride, answer_size, batch.count);
   }
-  trace(committed, kernel, batch, on_calling_thread);
+  trace(committed, question, batch, request);
 }
 
 /// Checks the arguments that multi-hit calls have of their own. hits is what the caller gave.
@@ -166,11 +181,9 @@ kiwami_result kiwami_closest_hit(const kiwami_scene* scene, const kiwami_ray* ra
   const RayBatch batch{
       reinterpret_cast<const unsigned char*>(rays), ray_stride ? ray_stride : sizeof(kiwami_ray),
       reinterpret_cast<unsigned char*>(hits), hit_stride ? hit_stride : sizeof(kiwami_hit), count};
-  if (answer_few(scene, &TraversalKernels::closest_hit, batch, query)) return KIWAMI_OK;
+  if (answer_few(scene, kClosestHit, batch, query)) return KIWAMI_OK;
   return guarded(device_of(scene), [&] {
-    const CommittedScene& committed = committed_of(scene);
-    trace_array(committed, committed.kernels().closest_hit, batch, sizeof(kiwami_hit), "hits",
-                query);
+    trace_array(committed_of(scene), kClosestHit, batch, sizeof(kiwami_hit), "hits", query);
   });
 }
 
@@ -180,10 +193,9 @@ kiwami_result kiwami_any_hit(const kiwami_scene* scene, const kiwami_ray* rays, 
   const RayBatch batch{reinterpret_cast<const unsigned char*>(rays),
                        ray_stride ? ray_stride : sizeof(kiwami_ray), occluded,
                        stride ? stride : sizeof(uint8_t), count};
-  if (answer_few(scene, &TraversalKernels::any_hit, batch, query)) return KIWAMI_OK;
+  if (answer_few(scene, kAnyHit, batch, query)) return KIWAMI_OK;
   return guarded(device_of(scene), [&] {
-    const CommittedScene& committed = committed_of(scene);
-    trace_array(committed, committed.kernels().any_hit, batch, sizeof(uint8_t), "occluded", query);
+    trace_array(committed_of(scene), kAnyHit, batch, sizeof(uint8_t), "occluded", query);
   });
 }
 
@@ -192,7 +204,7 @@ kiwami_result kiwami_closest_hit_fields(const kiwami_scene* scene, const kiwami_
                                         const kiwami_query* query) {
   return guarded(device_of(scene), [&] {
     const CommittedScene& committed = committed_of(scene);
-    const bool on_calling_thread = is_on_calling_thread(query);
+    const TraceRequest request = read_query(query, committed, count);
     const kiwami_ray_fields inputs = read_ray_fields(rays, count);
     const kiwami_hit_fields outputs = read_descriptor(hits, kMinimumStructSize, "hits", kNoHits);
     check_reserved("hits.reserved", outputs.reserved);
@@ -201,7 +213,7 @@ kiwami_result kiwami_closest_hit_fields(const kiwami_scene* scene, const kiwami_
       check_ray_fields(inputs, count);
       check_hit_fields(outputs, count);
     }
-    trace_closest_hit(committed, inputs, outputs, count, on_calling_thread);
+    trace_closest_hit(committed, inputs, outputs, count, request);
   });
 }
 
@@ -210,7 +222,7 @@ kiwami_result kiwami_any_hit_fields(const kiwami_scene* scene, const kiwami_ray_
                                     const kiwami_query* query) {
   return guarded(device_of(scene), [&] {
     const CommittedScene& committed = committed_of(scene);
-    const bool on_calling_thread = is_on_calling_thread(query);
+    const TraceRequest request = read_query(query, committed, count);
     const kiwami_ray_fields inputs = read_ray_fields(rays, count);
     check_not_null(occluded, "occluded");
     if (count == 0) return;
@@ -221,7 +233,7 @@ kiwami_result kiwami_any_hit_fields(const kiwami_scene* scene, const kiwami_ray_
                     sizeof(uint8_t), count);
       }
     }
-    trace_any_hit(committed, inputs, *occluded, count, on_calling_thread);
+    trace_any_hit(committed, inputs, *occluded, count, request);
   });
 }
 
@@ -231,7 +243,8 @@ kiwami_result kiwami_multi_hit(const kiwami_scene* scene, const kiwami_ray* rays
                                const kiwami_query* query) {
   return guarded(device_of(scene), [&] {
     const CommittedScene& committed = committed_of(scene);
-    const MultiHitRequest request{max_hits, hit_capacity, offsets, is_on_calling_thread(query)};
+    const MultiHitRequest request{max_hits, hit_capacity, offsets,
+                                  read_query(query, committed, count).on_calling_thread};
     check_multi_hit(hits, hit_capacity, offsets);
     const RayBatch batch{reinterpret_cast<const unsigned char*>(rays),
                          ray_stride ? ray_stride : sizeof(kiwami_ray), nullptr, 0, count};
@@ -247,11 +260,10 @@ kiwami_result kiwami_count_hits(const kiwami_scene* scene, const kiwami_ray* ray
                                 size_t ray_stride, uint32_t* counts, size_t stride, size_t count,
                                 const kiwami_query* query) {
   return guarded(device_of(scene), [&] {
-    const CommittedScene& committed = committed_of(scene);
     const RayBatch batch{
         reinterpret_cast<const unsigned char*>(rays), ray_stride ? ray_stride : sizeof(kiwami_ray),
         reinterpret_cast<unsigned char*>(counts), stride ? stride : sizeof(uint32_t), count};
-    trace_array(committed, committed.kernels().all_hits, batch, sizeof(uint32_t), "counts", query);
+    trace_array(committed_of(scene), kAllHits, batch, sizeof(uint32_t), "counts", query);
   });
 }
 
@@ -261,7 +273,8 @@ kiwami_result kiwami_multi_hit_fields(const kiwami_scene* scene, const kiwami_ra
                                       uint64_t* offsets, const kiwami_query* query) {
   return guarded(device_of(scene), [&] {
     const CommittedScene& committed = committed_of(scene);
-    const MultiHitRequest request{max_hits, hit_capacity, offsets, is_on_calling_thread(query)};
+    const MultiHitRequest request{max_hits, hit_capacity, offsets,
+                                  read_query(query, committed, count).on_calling_thread};
     check_multi_hit(hits, hit_capacity, offsets);
     const kiwami_ray_fields inputs = read_ray_fields(rays, count);
     const kiwami_hit_fields outputs =
@@ -281,7 +294,7 @@ kiwami_result kiwami_count_hits_fields(const kiwami_scene* scene, const kiwami_r
                                        const kiwami_query* query) {
   return guarded(device_of(scene), [&] {
     const CommittedScene& committed = committed_of(scene);
-    const bool on_calling_thread = is_on_calling_thread(query);
+    const TraceRequest request = read_query(query, committed, count);
     const kiwami_ray_fields inputs = read_ray_fields(rays, count);
     check_not_null(counts, "counts");
     if (count == 0) return;
@@ -289,7 +302,7 @@ kiwami_result kiwami_count_hits_fields(const kiwami_scene* scene, const kiwami_r
       check_ray_fields(inputs, count);
       check_output_field("counts", *counts, count);
     }
-    trace_all_hits(committed, inputs, *counts, count, on_calling_thread);
+    trace_all_hits(committed, inputs, *counts, count, request);
   });
 }
 

@@ -41,6 +41,8 @@ class CommittedScene : public Object<CommittedScene> {
   Memory& memory() const { return device_->memory(); }
   const SceneView& view() const { return view_; }
   const TraversalKernels& kernels() const { return kernels_; }
+  /// Whether the scene is one that the plain kernels know.
+  bool is_plain() const { return view_.part_count == 0; }
   const Parallel& parallel() const { return device_->parallel(); }
   bool validates_arguments() const { return device_->validates_arguments(); }
   const kiwami_scene_info& info() const { return info_; }

@@ -30,6 +30,22 @@ struct TraversalCounters {
   uint64_t double_fallbacks;   ///< edge functions decided in double precision
 };
 
+/// What a query asks beyond its rays; plain kernels know nothing of it. Element i of a strided
+/// field belongs to ray i of the batch.
+struct QueryOptions {
+  unsigned char* instance_paths;  ///< KIWAMI_MAX_INSTANCE_DEPTH uint32_t a ray, or nullptr
+  size_t instance_path_stride;
+
+  bool is_empty() const { return instance_paths == nullptr; }
+
+  /// The options of the rays from first on.
+  QueryOptions from(size_t first) const {
+    QueryOptions rest = *this;
+    if (rest.instance_paths) rest.instance_paths += first * instance_path_stride;
+    return rest;
+  }
+};
+
 using TraversalKernel = void (*)(const SceneView& scene, const RayBatch& batch);
 using CountingKernel = void (*)(const SceneView& scene, const RayBatch& batch,
                                 TraversalCounters& counters);
@@ -55,7 +71,22 @@ struct HitRoom {
 using MultiHitKernel = size_t (*)(const SceneView& scene, const RayBatch& batch, uint32_t max_hits,
                                   HitRoom& room);
 
-/// The kernels of one node width; all null where the ISA has none.
+using GeneralKernel = void (*)(const SceneView& scene, const RayBatch& batch,
+                               const QueryOptions& options);
+using CountingGeneralKernel = void (*)(const SceneView& scene, const RayBatch& batch,
+                                       const QueryOptions& options, TraversalCounters& counters);
+
+/// Kernels for every scene and query. The answers are those of the plain kernels.
+struct GeneralKernels {
+  GeneralKernel closest_hit;
+  GeneralKernel any_hit;
+  GeneralKernel all_hits;
+  CountingGeneralKernel closest_hit_counted;
+  CountingGeneralKernel any_hit_counted;
+};
+
+/// The kernels of one node width; all null where the ISA has none. Those that are not in general
+/// are for scenes of static triangles alone, and for queries without options.
 struct TraversalKernels {
   TraversalKernel closest_hit;         ///< answers: kiwami_hit
   TraversalKernel any_hit;             ///< answers: uint8_t, 1 or 0
@@ -63,6 +94,7 @@ struct TraversalKernels {
   CountingKernel closest_hit_counted;  ///< the same answers, and the counters
   CountingKernel any_hit_counted;
   MultiHitKernel multi_hit = nullptr;
+  GeneralKernels general{};
 };
 
 struct KernelTable {

@@ -11,19 +11,31 @@ TraversalKernels kernels_w4();
 TraversalKernels kernels_w8();
 TraversalKernels kernels_w16();
 
+// In objects of their own, so that the plain kernels are compiled as if there were no others.
 MultiHitKernel multi_hit_w4();
 MultiHitKernel multi_hit_w8();
 MultiHitKernel multi_hit_w16();
+GeneralKernels general_w4();
+GeneralKernels general_w8();
+GeneralKernels general_w16();
 
-inline TraversalKernels joined(TraversalKernels kernels, MultiHitKernel multi_hit) {
+inline TraversalKernels joined(TraversalKernels kernels, MultiHitKernel multi_hit,
+                               const GeneralKernels& general) {
   kernels.multi_hit = multi_hit;
+  kernels.general = general;
   return kernels;
 }
 
 /// All kernels of one width.
-inline TraversalKernels all_kernels_w4() { return joined(kernels_w4(), multi_hit_w4()); }
-inline TraversalKernels all_kernels_w8() { return joined(kernels_w8(), multi_hit_w8()); }
-inline TraversalKernels all_kernels_w16() { return joined(kernels_w16(), multi_hit_w16()); }
+inline TraversalKernels all_kernels_w4() {
+  return joined(kernels_w4(), multi_hit_w4(), general_w4());
+}
+inline TraversalKernels all_kernels_w8() {
+  return joined(kernels_w8(), multi_hit_w8(), general_w8());
+}
+inline TraversalKernels all_kernels_w16() {
+  return joined(kernels_w16(), multi_hit_w16(), general_w16());
+}
 
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami

@@ -9,6 +9,7 @@
 // it visits what is near once, and it neither loses nor repeats hits at one distance.
 #pragma once
 
+#include "kernels/hit-inl.h"
 #include "kernels/hit-list-inl.h"
 #include "kernels/traversal-inl.h"
 
@@ -22,13 +23,7 @@ inline kiwami_hit hit_of(const SceneView& scene, const LeafBlock<N>& leaf, int l
                          const Crossings<N>& crossings) {
   kiwami_hit hit;
   hit.t = crossings.t[lane];
-  hit.u = static_cast<float>(crossings.v[lane] / crossings.sum[lane]);
-  hit.v = static_cast<float>(crossings.w[lane] / crossings.sum[lane]);
-  const auto corner = [&](int k, int axis) { return leaf.position[k][axis][lane]; };
-  const auto edge = [&](int k, int axis) { return corner(k, axis) - corner(0, axis); };
-  hit.normal_x = edge(1, 1) * edge(2, 2) - edge(1, 2) * edge(2, 1);
-  hit.normal_y = edge(1, 2) * edge(2, 0) - edge(1, 0) * edge(2, 2);
-  hit.normal_z = edge(1, 0) * edge(2, 1) - edge(1, 1) * edge(2, 0);
+  describe_triangle(leaf, lane, crossings, hit);
   const GeometryRange& range = range_of(scene, leaf.id[lane]);
   hit.primitive_id = leaf.id[lane] - range.first_id;
   hit.geometry_id = range.geometry_id;

@@ -11,21 +11,34 @@ namespace {
 struct NoProbe {
   static constexpr bool kNeedsEntry = false;
 
+  /// What leave takes to undo an enter.
+  struct Level {};
+
   void on_node() {}
   void on_leaf(float) {}
   void on_accept(const SceneView&, const ReadyRay&, uint32_t, float) {}
   void on_double_fallback() {}
+  Level enter(const ReadyRay&) { return {}; }
+  void leave(Level) {}
 };
 
 /// Counts, and checks what the order of visits rests on: no accepted hit lies before the distance
-/// at which the ray enters the box of its own leaf; in a tree that has duplicates, that some leaf
-/// of its triangle holds it.
+/// at which the ray enters the box of its own leaf, nor those of the instances around it; in a tree
+/// that has duplicates, that some leaf of its triangle holds it.
 template <int N>
 struct CountingProbe {
   static constexpr bool kNeedsEntry = true;
 
+  /// The leaf of an instance that was entered, as the ray outside sees it.
+  struct Level {
+    const ReadyRay* ray;
+    float leaf_entry;
+  };
+
   TraversalCounters& counters;
   float leaf_entry = 0.0f;
+  uint32_t depth = 0;
+  Level levels[KIWAMI_MAX_INSTANCE_DEPTH] = {};
 
   void on_node() { ++counters.node_visits; }
   void on_leaf(float entry) {
@@ -34,6 +47,11 @@ struct CountingProbe {
   }
   void on_accept(const SceneView& scene, const ReadyRay& ray, uint32_t id, float t);
   void on_double_fallback() { ++counters.double_fallbacks; }
+  Level enter(const ReadyRay& ray) { return levels[depth++] = {&ray, leaf_entry}; }
+  void leave(const Level& level) {
+    leaf_entry = level.leaf_entry;
+    --depth;
+  }
 };
 
 }  // namespace

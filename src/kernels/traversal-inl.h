@@ -121,10 +121,16 @@ __attribute__((always_inline)) inline bool advance(const TreeView& tree, const S
     }
   } else {
     probe.on_leaf(current.entry);
-    const LeafBlock<N>& leaf = leaf_at<N>(tree.memory, current.subtree);
-    if (query.visit_leaf(leaf, current.subtree.mask(), probe)) {
-      is_done = true;
-      return true;
+    // Some want to find what a leaf refers to themselves.
+    if constexpr (requires { query.visit_block(tree, current.subtree, probe); }) {
+      is_done = query.visit_block(tree, current.subtree, probe);
+      if (is_done) return true;
+    } else {
+      const LeafBlock<N>& leaf = leaf_at<N>(tree.memory, current.subtree);
+      if (query.visit_leaf(leaf, current.subtree.mask(), probe)) {
+        is_done = true;
+        return true;
+      }
     }
   }
   do {

@@ -115,12 +115,27 @@ struct GeometryRange {
   uint32_t mask;
 };
 
+/// What the leaves of a part's tree hold.
+enum class PartKind : uint32_t { kInstances };
+
+/// A tree of a scene beside that of its triangles, with leaves of ids. Plain data.
+struct ScenePart {
+  PartKind kind;
+  TreeView tree;
+  const void* data;  ///< by kind: InstancePart
+  // Of a ray whose origin has a coordinate beyond far_origin, the slabs are wider by
+  // far_origin_margin times what it is beyond.
+  float far_origin, far_origin_margin;
+};
+
 /// What a kernel needs of a scene.
 struct SceneView {
-  TreeView tree;
+  TreeView tree;                ///< of the static triangles
   const GeometryRange* ranges;  ///< by first_id, rising
   uint32_t range_count;
   uint32_t has_masks;  ///< 0: every geometry's mask is all ones
+  uint32_t part_count;
+  const ScenePart* parts;  ///< everything but the static triangles; none is empty
 };
 
 }  // namespace kiwami

@@ -142,9 +142,11 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_scene_info, bounds_max, 124);
   FIELD(kiwami_scene_info, reference_count, 136);
 
-  SIZE(kiwami_query, 8);
+  SIZE(kiwami_query, 24);
   FIELD(kiwami_query, struct_size, 0);
   FIELD(kiwami_query, flags, 4);
+  FIELD(kiwami_query, instance_paths, 8);
+  FIELD(kiwami_query, instance_path_stride, 16);
 }
 
 static void check_bvh(void) {

@@ -78,7 +78,7 @@ TEST_F(TraceErrors, QueryFlagsMustBeKnown) {
   expect_sentence(kiwami_any_hit(scene_.get(), rays_, 0, occluded_, 0, 2, &query), sentence);
   query.struct_size = 4;
   expect_sentence(kiwami_any_hit(scene_.get(), rays_, 0, occluded_, 0, 2, &query),
-                  "query.struct_size is 4, expected a multiple of 4 from 8 to 65536");
+                  "query.struct_size is 4, expected a multiple of 8 from 8 to 65536");
 }
 
 TEST_F(TraceErrors, ArraysMustBeThere) {

@@ -48,9 +48,9 @@ const SceneView& view_of(const kiwami_scene* scene) {
 
 /// What all kernels of a width say about the same rays.
 struct Answers {
-  std::vector<kiwami_hit> closest, closest_counted;
-  std::vector<uint8_t> any, any_counted;
-  std::vector<uint32_t> all;
+  std::vector<kiwami_hit> closest, closest_counted, closest_general;
+  std::vector<uint8_t> any, any_counted, any_general;
+  std::vector<uint32_t> all, all_general;
   TraversalCounters counters{};
 };
 
@@ -70,20 +70,27 @@ Answers trace(const TraversalKernels& kernels, const SceneView& view,
   kernels.any_hit(view, batch_of(rays, answers.any));
   kernels.any_hit_counted(view, batch_of(rays, answers.any_counted), any_counters);
   kernels.all_hits(view, batch_of(rays, answers.all));
+  const kiwami::QueryOptions none{};
+  kernels.general.closest_hit(view, batch_of(rays, answers.closest_general), none);
+  kernels.general.any_hit(view, batch_of(rays, answers.any_general), none);
+  kernels.general.all_hits(view, batch_of(rays, answers.all_general), none);
   return answers;
 }
 
 void expect_equal(const Answers& answers, const Answers& reference,
                   const std::vector<kiwami_ray>& rays) {
   for (size_t i = 0; i < rays.size(); ++i) {
-    for (const auto* hits : {&answers.closest, &answers.closest_counted}) {
+    for (const auto* hits :
+         {&answers.closest, &answers.closest_counted, &answers.closest_general}) {
       ASSERT_TRUE(is_same((*hits)[i], reference.closest[i]))
           << describe(rays[i]) << "\n  " << describe((*hits)[i]) << "\n  scalar "
           << describe(reference.closest[i]);
     }
     ASSERT_EQ(answers.any[i], reference.any[i]) << describe(rays[i]);
     ASSERT_EQ(answers.any_counted[i], reference.any[i]) << describe(rays[i]);
+    ASSERT_EQ(answers.any_general[i], reference.any[i]) << describe(rays[i]);
     ASSERT_EQ(answers.all[i], reference.all[i]) << describe(rays[i]);
+    ASSERT_EQ(answers.all_general[i], reference.all[i]) << describe(rays[i]);
   }
   EXPECT_EQ(answers.counters.margin_violations, 0u);
 }

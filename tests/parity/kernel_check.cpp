@@ -59,6 +59,33 @@ std::string difference_in_order(const NamedKernels& named, const kiwami::SceneVi
   return found;
 }
 
+/// As difference_in_order, of the kernels for all kinds of scenes.
+std::string general_difference(const kiwami::GeneralKernels& kernels, const kiwami::SceneView& view,
+                               const Expected& expected) {
+  const auto& rays = expected.rays;
+  kiwami::TraversalCounters counters{};
+  std::string found =
+      difference(run_general<kiwami_hit>(kernels.closest_hit, view, rays), expected);
+  if (found.empty()) {
+    found = difference(run_general<uint8_t>(kernels.any_hit, view, rays), expected);
+  }
+  if (found.empty()) {
+    found = count_difference(run_general<uint32_t>(kernels.all_hits, view, rays), expected);
+  }
+  if (found.empty()) {
+    found = difference(run_general<kiwami_hit>(kernels.closest_hit_counted, view, rays, counters),
+                       expected);
+  }
+  if (found.empty()) {
+    found =
+        difference(run_general<uint8_t>(kernels.any_hit_counted, view, rays, counters), expected);
+  }
+  if (found.empty() && counters.margin_violations) {
+    found = std::to_string(counters.margin_violations) + " hits outside their leaf's box";
+  }
+  return found.empty() ? "" : "general kernels: " + found;
+}
+
 }  // namespace
 
 Expected grouped_by_octant(const Expected& expected) {
@@ -122,6 +149,7 @@ std::string difference(const NamedKernels& named, const kiwami::SceneView& view,
     found = difference_in_order(named, beyond_caches, expected);
     if (!found.empty()) found = "as in a tree beyond the caches: " + found;
   }
+  if (found.empty()) found = general_difference(named.kernels.general, view, expected);
   return found.empty() ? "" : named.name + ": " + found;
 }
 

@@ -40,4 +40,16 @@ std::vector<uint8_t> run_counted_any_hit(kiwami::CountingKernel kernel,
                                          const std::vector<kiwami_ray>& rays,
                                          kiwami::TraversalCounters& counters);
 
+/// A general kernel, counting or not, without options.
+template <typename Answer, typename Kernel, typename... Counters>
+std::vector<Answer> run_general(Kernel kernel, const kiwami::SceneView& scene,
+                                const std::vector<kiwami_ray>& rays, Counters&... counters) {
+  std::vector<Answer> answers(rays.size());
+  kernel(scene,
+         {reinterpret_cast<const unsigned char*>(rays.data()), sizeof(kiwami_ray),
+          reinterpret_cast<unsigned char*>(answers.data()), sizeof(Answer), rays.size()},
+         kiwami::QueryOptions{}, counters...);
+  return answers;
+}
+
 }  // namespace kiwami_tests

@@ -183,7 +183,9 @@ internal unsafe struct kiwami_hit_fields {
 internal unsafe struct kiwami_query {
   public uint struct_size;
   public uint flags;
-  public const int Size = 8;
+  public IntPtr instance_paths;
+  public ulong instance_path_stride;
+  public const int Size = 24;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -398,6 +400,7 @@ internal static class Native {
   public const uint KIWAMI_FILE_FORMAT_VERSION = 1;
   public const uint KIWAMI_INVALID_ID = 4294967295;
   public const float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
+  public const uint KIWAMI_MAX_INSTANCE_DEPTH = 8;
   public const uint KIWAMI_VERSION_MAJOR = 0;
   public const uint KIWAMI_VERSION_MINOR = 1;
   public const uint KIWAMI_VERSION_PATCH = 0;

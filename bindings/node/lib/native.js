@@ -8,6 +8,7 @@ exports.constants = {
   KIWAMI_FILE_FORMAT_VERSION: 1,
   KIWAMI_INVALID_ID: 4294967295,
   KIWAMI_MAX_COORDINATE: 1.152921504606847e+18,
+  KIWAMI_MAX_INSTANCE_DEPTH: 8,
   KIWAMI_VERSION_MAJOR: 0,
   KIWAMI_VERSION_MINOR: 1,
   KIWAMI_VERSION_PATCH: 0,
@@ -323,10 +324,12 @@ exports.structs = {
     },
   },
   kiwami_query: {
-    size: 8,
+    size: 24,
     fields: {
       struct_size: 'uint32_t',
       flags: 'uint32_t',
+      instance_paths: 'void *',
+      instance_path_stride: 'uint64_t',
     },
   },
   kiwami_bvh_node: {

@@ -8,6 +8,7 @@ KIWAMI_ABI_VERSION = 0
 KIWAMI_FILE_FORMAT_VERSION = 1
 KIWAMI_INVALID_ID = 4294967295
 KIWAMI_MAX_COORDINATE = 1.152921504606847e+18
+KIWAMI_MAX_INSTANCE_DEPTH = 8
 KIWAMI_VERSION_MAJOR = 0
 KIWAMI_VERSION_MINOR = 1
 KIWAMI_VERSION_PATCH = 0
@@ -282,6 +283,8 @@ class kiwami_query(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
         ("flags", ctypes.c_uint32),
+        ("instance_paths", ctypes.c_void_p),
+        ("instance_path_stride", ctypes.c_uint64),
     ]
 
 
@@ -501,7 +504,7 @@ SIZES = {
     kiwami_output_field: 16,
     kiwami_ray_fields: 184,
     kiwami_hit_fields: 152,
-    kiwami_query: 8,
+    kiwami_query: 24,
     kiwami_bvh_node: 56,
     kiwami_bvh_primitive: 8,
     kiwami_bvh_info: 56,

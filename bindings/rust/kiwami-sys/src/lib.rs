@@ -12,6 +12,7 @@ pub const KIWAMI_ABI_VERSION: u32 = 0;
 pub const KIWAMI_FILE_FORMAT_VERSION: u32 = 1;
 pub const KIWAMI_INVALID_ID: u32 = 4294967295;
 pub const KIWAMI_MAX_COORDINATE: f32 = 1.152921504606847e+18;
+pub const KIWAMI_MAX_INSTANCE_DEPTH: u32 = 8;
 pub const KIWAMI_VERSION_MAJOR: u32 = 0;
 pub const KIWAMI_VERSION_MINOR: u32 = 1;
 pub const KIWAMI_VERSION_PATCH: u32 = 0;
@@ -306,8 +307,10 @@ const _: () = assert!(std::mem::size_of::<kiwami_hit_fields>() == 152);
 pub struct kiwami_query {
     pub struct_size: u32,
     pub flags: u32,
+    pub instance_paths: *mut u32,
+    pub instance_path_stride: u64,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_query>() == 8);
+const _: () = assert!(std::mem::size_of::<kiwami_query>() == 24);
 
 #[repr(C)]
 #[derive(Clone, Copy)]

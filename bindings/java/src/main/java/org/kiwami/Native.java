@@ -13,6 +13,7 @@ final class Native {
   static final int KIWAMI_FILE_FORMAT_VERSION = 1;
   static final int KIWAMI_INVALID_ID = 0xffffffff;
   static final float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
+  static final int KIWAMI_MAX_INSTANCE_DEPTH = 8;
   static final int KIWAMI_VERSION_MAJOR = 0;
   static final int KIWAMI_VERSION_MINOR = 1;
   static final int KIWAMI_VERSION_PATCH = 0;
@@ -253,9 +254,11 @@ final class Native {
 
   /** Offsets of kiwami_query. */
   static final class Query {
-    static final int STRUCT_BYTES = 8;
+    static final int STRUCT_BYTES = 24;
     static final int STRUCT_SIZE = 0;
     static final int FLAGS = 4;
+    static final int INSTANCE_PATHS = 8;
+    static final int INSTANCE_PATH_STRIDE = 16;
   }
 
   /** Offsets of kiwami_bvh_node. */

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels for scenes of all kinds and for all that a query may ask: one ray after the other,
+// through the tree of a scene's triangles, its further parts, and the scenes that it instances.
+// They are objects of their own, so that the plain kernels know nothing of all this.
+#pragma once
+
+#include "kernels/answers-inl.h"
+#include "kernels/general-query-inl.h"
+#include "wide/instance_part.h"
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+/// The ray as the tree of a part reads it.
+inline void set_up_for_part(const UnalignedRay& ray, const ScenePart& part, ReadyRay& out) {
+  set_up(ray, part.tree, out);
+  const float farthest = first_lane(greatest_of_three(absolute(origin_of(ray))));
+  if (__builtin_expect(!(farthest > part.far_origin), 1)) return;
+  // The slabs of the greatest bounds take two more roundings here.
+  constexpr float rounding = 4.0f * 0x1p-24f;
+  const float margin = (farthest - part.far_origin) * part.far_origin_margin + farthest * rounding;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float wider = margin * __builtin_fabsf(out.reciprocal[axis]);
+    out.near_offset[axis] -= wider;
+    out.far_offset[axis] += wider;
+  }
+}
+
+/// The ray in the space of an instanced scene. Not normalised: a distance stays the same number.
+inline kiwami_ray transform(const InstanceRecord& instance, const UnalignedRay& ray) {
+  const auto column = [&](int k) { return load_from_bytes<4>(instance.column[k]); };
+  const vfloat<4> x = column(0), y = column(1), z = column(2);
+  const vfloat<4> origin = ((x * broadcast<4>(ray.origin_x) + y * broadcast<4>(ray.origin_y)) +
+                            z * broadcast<4>(ray.origin_z)) +
+                           column(3);
+  const vfloat<4> direction =
+      (x * broadcast<4>(ray.direction_x) + y * broadcast<4>(ray.direction_y)) +
+      z * broadcast<4>(ray.direction_z);
+  float components[8];
+  store(components, origin);
+  store(components + 4, direction);
+  kiwami_ray local;
+  local.origin_x = components[0];
+  local.origin_y = components[1];
+  local.origin_z = components[2];
+  local.tmin = ray.tmin;
+  local.direction_x = components[4];
+  local.direction_y = components[5];
+  local.direction_z = components[6];
+  local.tmax = ray.tmax;
+  local.time = ray.time;
+  local.mask = ray.mask;
+  local.flags = ray.flags;
+  local.id = ray.id;
+  return local;
+}
+
+/// One ray on its way through a graph of scenes. Scenes are visited by recursion: a path has at
+/// most KIWAMI_MAX_INSTANCE_DEPTH instances.
+template <typename Query, int N, typename Probe>
+struct GeneralTraversal {
+  Query& query;
+  Probe& probe;
+
+  /// Visits what the query has to see of a scene, by the ray as it is there, which is_traceable.
+  /// Returns true if the query ended.
+  // Not inlined: it calls itself.
+  __attribute__((noinline)) bool visit_scene(const SceneView& scene, const UnalignedRay& ray) {
+    ReadyRay ready;
+    if (scene.tree.root.mask() != 0) {
+      set_up(ray, scene.tree, ready);
+      query.set_level(scene, ready, query.reach());
+      if (traverse<N>(scene.tree, {scene.tree.root, ready.nearest}, ready, query, probe)) {
+        return true;
+      }
+    }
+    for (uint32_t i = 0; i < scene.part_count; ++i) {
+      const ScenePart& part = scene.parts[i];
+      set_up_for_part(ray, part, ready);
+      query.set_level(scene, ready, query.reach());
+      if (visit_part(scene, part, ray, ready)) return true;
+    }
+    return false;
+  }
+
+  bool visit_part(const SceneView& scene, const ScenePart& part, const UnalignedRay& ray,
+                  const ReadyRay& ready) {
+    switch (part.kind) {
+      case PartKind::kInstances: {
+        InstanceVisitor visitor{*this, scene, *static_cast<const InstancePart*>(part.data),
+                                ray,   ready, query.best_bound};
+        return visit_tree(part.tree, ready, visitor);
+      }
+    }
+    return false;
+  }
+
+  template <typename Visitor>
+  bool visit_tree(const TreeView& tree, const ReadyRay& ready, Visitor& visitor) {
+    return traverse<N>(tree, {tree.root, ready.nearest}, ready, visitor, probe);
+  }
+
+  /// Enters the instances in the leaves of a part.
+  struct InstanceVisitor {
+    static constexpr bool kOrdered = Query::kOrdered;
+
+    GeneralTraversal& traversal;
+    const SceneView& scene;
+    const InstancePart& part;
+    const UnalignedRay& ray;
+    const ReadyRay& ready;
+    float best_bound;
+
+    bool visit_block(const TreeView& tree, ChildReference reference, Probe&) {
+      const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, reference);
+      for (uint32_t lanes = reference.mask(); lanes; lanes &= lanes - 1) {
+        if (visit_instance(block.id[__builtin_ctz(lanes)])) return true;
+      }
+      return false;
+    }
+
+    bool visit_instance(uint32_t number) {
+      const InstanceRecord& instance = part.instances[number];
+      const Prototype& prototype = part.prototypes[instance.prototype];
+      const uint32_t mask = part.masks ? part.masks[number] & prototype.mask : prototype.mask;
+      if ((ray.mask & mask) == 0) return false;
+      const kiwami_ray local = transform(instance, ray);
+      if (!is_traceable(local)) return false;
+      Query& query = traversal.query;
+      query.path.number[query.path.depth++] = number;
+      const auto level = traversal.probe.enter(ready);
+      if (traversal.visit_scene(*prototype.scene, local)) return true;
+      traversal.probe.leave(level);
+      --query.path.depth;
+      query.set_level(scene, ready, query.reach());
+      best_bound = query.best_bound;
+      return false;
+    }
+  };
+};
+
+template <typename Query, int N, typename Probe>
+inline void trace_general(const SceneView& scene, const RayBatch& batch,
+                          const QueryOptions& options, Probe& probe) {
+  for (size_t i = 0; i < batch.count; ++i) {
+    const UnalignedRay& ray = ray_of(batch, i);
+    Query query;
+    query.begin(options.from(i), ray);
+    if (is_traceable(ray)) GeneralTraversal<Query, N, Probe>{query, probe}.visit_scene(scene, ray);
+    write_answer(batch, i, query.answer());
+    query.deliver();
+  }
+}
+
+template <typename Query, int N>
+void general_kernel(const SceneView& scene, const RayBatch& batch, const QueryOptions& options) {
+  NoProbe probe;
+  trace_general<Query, N>(scene, batch, options, probe);
+}
+
+template <typename Query, int N>
+void counting_general_kernel(const SceneView& scene, const RayBatch& batch,
+                             const QueryOptions& options, TraversalCounters& counters) {
+  CountingProbe<N> probe{counters};
+  trace_general<Query, N>(scene, batch, options, probe);
+}
+
+template <int N>
+inline GeneralKernels general_of_width() {
+  return {general_kernel<GeneralClosestHit<N>, N>, general_kernel<GeneralAnyHit<N>, N>,
+          general_kernel<GeneralAllHits<N>, N>, counting_general_kernel<GeneralClosestHit<N>, N>,
+          counting_general_kernel<GeneralAnyHit<N>, N>};
+}
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami

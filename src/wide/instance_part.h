@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a kernel needs of the instances of a scene.
+#pragma once
+
+#include "wide/wide_bvh.h"
+
+namespace kiwami {
+
+/// One instance. A million of them may stand in a scene: 52 bytes each.
+struct InstanceRecord {
+  /// From the scene to the instanced one: where the axes and the origin go.
+  float column[4][3];
+  uint32_t prototype;  ///< an index
+};
+static_assert(sizeof(InstanceRecord) == 52);
+
+/// What instances share.
+struct Prototype {
+  const SceneView* scene;
+  uint32_t mask;  ///< of their geometry
+};
+
+/// Instances are numbered through, by geometry and then by their index there; the leaves of the
+/// part's tree hold these numbers. Plain data.
+struct InstancePart {
+  const InstanceRecord* instances;
+  const Prototype* prototypes;
+  const uint32_t* masks;  ///< of each instance; nullptr: all ones
+};
+
+}  // namespace kiwami
