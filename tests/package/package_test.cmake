@@ -32,7 +32,7 @@ function(build_consumer mode library)
       -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix -DKIWAMI_SOURCE_DIR=${SOURCE_DIR}
       -DKIWAMI_TASKING=${TASKING} -DKIWAMI_ISAS=none)
   run("building ${mode} ${library}" ${CMAKE_COMMAND} --build ${folder} --parallel 2)
-  foreach(language IN ITEMS c cpp)
+  foreach(language IN ITEMS c cpp hpp)
     run_consumer("${mode} ${library} ${language}" ${folder}/consumer_${language})
   endforeach()
 endfunction()
