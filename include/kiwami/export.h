@@ -73,9 +73,10 @@ typedef struct kiwami_compressed8_node {
 } kiwami_compressed8_node;
 
 /* How many nodes and primitives kiwami_bvh_export writes. A tree of nothing has none; a root that
- * is a leaf becomes the one child of a node in the wide formats. Each pointer may be NULL. errors
- * INVALID_ARGUMENT: bvh is NULL, an unknown format, a tree that does not fit into it: too wide, too
- * many primitives in a leaf [any thread]; since 0.1 */
+ * is a leaf becomes the one child of a node in the wide formats. Each pointer may be NULL.
+ *   errors    INVALID_ARGUMENT: bvh is NULL, an unknown format, a tree that does not fit into it:
+ *             too wide, too many primitives in a leaf
+ * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_bvh_export_counts(const kiwami_bvh* bvh, uint32_t format,
                                                   size_t* node_count, size_t* primitive_count);
 

@@ -105,11 +105,12 @@ KIWAMI_API kiwami_result kiwami_load_desc_init(kiwami_load_desc* desc, size_t si
 
 /* Saves what the last commit made of a scene: the tree, the geometries' buffers as they are now,
  * and the parameters of the next commit. Equal scenes give equal bytes. Geometries without
- * triangles and representative rays are not saved; the geometries keep their numbers. bytes
- * receives the size of the file, also where it did not fit into data. May be NULL. errors
- * INVALID_ARGUMENT: scene or desc is NULL, a field of desc, data that is too small; INVALID_STATE:
- * never committed; IO: a file could not be written; CALLBACK: write failed; OUT_OF_MEMORY [any
- * thread after commit]; since 0.1 */
+ * triangles and representative rays are not saved; the geometries keep their numbers.
+ *   bytes     receives the size of the file, also where it did not fit into data. May be NULL.
+ *   errors    INVALID_ARGUMENT: scene or desc is NULL, a field of desc, data that is too small;
+ *             INVALID_STATE: never committed; IO: a file could not be written; CALLBACK: write
+ *             failed; OUT_OF_MEMORY
+ * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_save(const kiwami_scene* scene, const kiwami_save_desc* desc,
                                            uint64_t* bytes);
 
@@ -118,7 +119,8 @@ KIWAMI_API kiwami_result kiwami_scene_save(const kiwami_scene* scene, const kiwa
  *   scene     receives the handle, with one reference, or NULL on error
  *   errors    INVALID_ARGUMENT: NULL, a field of desc; IO: a file could not be read; INVALID_FILE:
  *             no file of a scene, one of a newer library, or a damaged one (the sentence says
- * where); CALLBACK: read or the runner failed; TOO_LARGE; OUT_OF_MEMORY [any thread]; since 0.1 */
+ *             where); CALLBACK: read or the runner failed; TOO_LARGE; OUT_OF_MEMORY
+ * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_load(kiwami_device* device, const kiwami_load_desc* desc,
                                            kiwami_scene** scene);
 

@@ -151,15 +151,19 @@ KIWAMI_API kiwami_result kiwami_any_hit_fields(const kiwami_scene* scene,
 
 /* Finds several hits of each ray, by rising (t, instance, geometry, primitive). A triangle that a
  * ray crosses is one hit, whatever tree the scene has; a segment with both ends outside of a closed
- * mesh has an even number of them. rays          count rays, ray_stride bytes apart (0:
- * sizeof(kiwami_ray)); NULL only if count is 0 max_hits      of each ray, the nearest so many; 0:
- * all hits          receives the hits of ray i at offsets[i] to offsets[i + 1] - 1, as far as they
- * fit: hit_capacity hits, tightly packed; may not overlap the rays; NULL only with hit_capacity 0,
- * when hits are only counted offsets       receives count + 1 numbers; the last one is the number
- * of all hits query         NULL for the defaults Large batches run on the device's threads; the
- * answer does not depend on their number. Hits pass through memory of the device, at most those of
- * 16384 rays at a time. errors        CAPACITY: hit_capacity is below offsets[count] and not 0 with
- * hits NULL; all offsets, and all hits below hit_capacity, are written. OUT_OF_MEMORY: neither is
+ * mesh has an even number of them.
+ *   rays          count rays, ray_stride bytes apart (0: sizeof(kiwami_ray)); NULL only if count
+ *                 is 0
+ *   max_hits      of each ray, the nearest so many; 0: all
+ *   hits          receives the hits of ray i at offsets[i] to offsets[i + 1] - 1, as far as they
+ *                 fit: hit_capacity hits, tightly packed; may not overlap the rays; NULL only with
+ *                 hit_capacity 0, when hits are only counted
+ *   offsets       receives count + 1 numbers; the last one is the number of all hits
+ *   query         NULL for the defaults
+ * Large batches run on the device's threads; the answer does not depend on their number. Hits pass
+ * through memory of the device, at most those of 16384 rays at a time.
+ *   errors        CAPACITY: hit_capacity is below offsets[count] and not 0 with hits NULL; all
+ *                 offsets, and all hits below hit_capacity, are written. OUT_OF_MEMORY: neither is
  *                 complete. INVALID_ARGUMENT: offsets is NULL, or hits with a hit_capacity;
  *                 otherwise as kiwami_closest_hit.
  * [any thread after commit]; since 0.1 */
