@@ -20,7 +20,7 @@ function(kiwami_add_isa isa)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/${isa})
   target_compile_definitions(${target} PRIVATE KIWAMI_ISA=${isa})
   target_compile_options(${target} PRIVATE ${ARG_FEATURES} -fno-lto -fno-exceptions -fno-rtti
-                                           -fno-asynchronous-unwind-tables)
+                                           -fno-math-errno -fno-asynchronous-unwind-tables)
   if(isa STREQUAL "avx512" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC's own header reads an undefined register on purpose and warns of it (GCC bug 105593).
     target_compile_options(${target} PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized)

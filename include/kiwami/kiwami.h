@@ -11,6 +11,7 @@
 #include "export.h"
 #include "geometry.h"
 #include "io.h"
+#include "light.h"
 #include "scene.h"
 #include "trace.h"
 

@@ -54,6 +54,7 @@ inline vfloat<8> operator/(vfloat<8> a, vfloat<8> b) {
 inline vfloat<8> absolute(vfloat<8> a) {
   return {simde_mm256_andnot_ps(simde_mm256_set1_ps(-0.0f), a.value)};
 }
+inline vfloat<8> square_root(vfloat<8> a) { return {simde_mm256_sqrt_ps(a.value)}; }
 inline vfloat<8> copy_sign(vfloat<8> magnitude, vfloat<8> sign) {
   return {simde_mm256_or_ps(magnitude.value,
                             simde_mm256_and_ps(simde_mm256_set1_ps(-0.0f), sign.value))};

@@ -55,6 +55,7 @@ inline simde__m512 with_bits_of(simde__m512 a, int32_t bits) {
       simde_mm512_and_epi32(simde_mm512_castps_si512(a), simde_mm512_set1_epi32(bits)));
 }
 inline vfloat<16> absolute(vfloat<16> a) { return {with_bits_of(a.value, 0x7FFFFFFF)}; }
+inline vfloat<16> square_root(vfloat<16> a) { return {simde_mm512_sqrt_ps(a.value)}; }
 inline vfloat<16> copy_sign(vfloat<16> magnitude, vfloat<16> sign) {
   return {simde_mm512_or_ps(magnitude.value, with_bits_of(sign.value, INT32_MIN))};
 }

@@ -128,9 +128,14 @@ class GrowingArray {
     return array_[size_++] = value;
   }
   void pop_back() { --size_; }
+  /// Room for size elements in all: until then push_back does not throw.
+  void reserve(size_t size) {
+    if (size > array_.size()) grow_to(size < size_ * 2 ? size_ * 2 : size);
+  }
   T& back() { return array_[size_ - 1]; }
   size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
+  const T* data() const { return array_.data(); }
   T& operator[](size_t index) { return array_[index]; }
   const T& operator[](size_t index) const { return array_[index]; }
 
@@ -143,8 +148,10 @@ class GrowingArray {
   }
 
  private:
-  void grow() {
-    Array<T> larger(*memory_, size_ < 8 ? 16 : size_ * 2);
+  void grow() { grow_to(size_ < 8 ? 16 : size_ * 2); }
+
+  void grow_to(size_t capacity) {
+    Array<T> larger(*memory_, capacity);
     if (size_) std::memcpy(static_cast<void*>(larger.data()), array_.data(), size_ * sizeof(T));
     array_ = std::move(larger);
   }

@@ -68,6 +68,11 @@ TraversalKernels kernels_of(uint32_t isa, uint32_t width) {
   return kernels.closest_hit ? kernels : table_of(KIWAMI_ISA_SCALAR).of_width(width);
 }
 
+LightKernels light_kernels_of(uint32_t isa, uint32_t width) {
+  const LightKernels kernels = table_of(isa).lights_of_width(width);
+  return kernels.sample ? kernels : table_of(KIWAMI_ISA_SCALAR).lights_of_width(width);
+}
+
 uint32_t native_widths_of(uint32_t isa) {
   const KernelTable table = table_of(isa);
   uint32_t widths = 0;

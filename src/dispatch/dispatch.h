@@ -22,6 +22,9 @@ uint32_t best_isa();
 /// both built and runnable.
 TraversalKernels kernels_of(uint32_t isa, uint32_t width);
 
+/// The kernels of a light tree's width (2, 4, 8 or 16), likewise.
+LightKernels light_kernels_of(uint32_t isa, uint32_t width);
+
 /// Bit (1 << width) for each width of which the ISA has its own kernels. The ISA must be built.
 uint32_t native_widths_of(uint32_t isa);
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/light_kernels.h"
 #include "kiwami/trace.h"
 #include "wide/wide_bvh.h"
 
@@ -100,9 +101,13 @@ struct TraversalKernels {
 struct KernelTable {
   uint32_t isa;                   ///< KIWAMI_ISA_*
   TraversalKernels traversal[3];  ///< widths 4, 8, 16
+  LightKernels lights[4] = {};    ///< widths 2, 4, 8, 16
 
   const TraversalKernels& of_width(uint32_t width) const {
     return traversal[width == 4 ? 0 : width == 8 ? 1 : 2];
+  }
+  const LightKernels& lights_of_width(uint32_t width) const {
+    return lights[width == 2 ? 0 : width == 4 ? 1 : width == 8 ? 2 : 3];
   }
 };
 

@@ -37,6 +37,9 @@ inline TraversalKernels all_kernels_w16() {
   return joined(kernels_w16(), multi_hit_w16(), general_w16());
 }
 
+/// Sets those of the widths that the ISA has.
+void set_light_kernels(LightKernels (&kernels)[4]);
+
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami
 

@@ -6,4 +6,5 @@ extern "C" void KIWAMI_KERNEL_TABLE_GETTER(kiwami::KernelTable* table) {
   *table = {
       KIWAMI_ISA_SCALAR,
       {KIWAMI_ISA::all_kernels_w4(), KIWAMI_ISA::all_kernels_w8(), KIWAMI_ISA::all_kernels_w16()}};
+  KIWAMI_ISA::set_light_kernels(table->lights);
 }

@@ -2,7 +2,7 @@
 // The vocabulary of the kernels in portable C++: the oracle of the other instruction sets.
 //
 //   vfloat<N>      N floats: load, load_from_bytes (at any address), store, + - * /, min, max,
-//   multiply_add,
+//   multiply_add, square_root,
 //                  comparisons to bit masks, signs, selections, powers of two; rows to columns and
 //                  back
 //   vfloat<4>      also greatest_of_three, first_bits, first_lane: for axes in lanes
@@ -102,6 +102,10 @@ KIWAMI_INLINE vfloat<N> operator/(vfloat<N> a, vfloat<N> b) {
 template <int N>
 KIWAMI_INLINE vfloat<N> absolute(vfloat<N> a) {
   return lane_by_lane<N>([&](int i) { return __builtin_fabsf(a.lane[i]); });
+}
+template <int N>
+KIWAMI_INLINE vfloat<N> square_root(vfloat<N> a) {
+  return lane_by_lane<N>([&](int i) { return __builtin_sqrtf(a.lane[i]); });
 }
 template <int N>
 KIWAMI_INLINE vfloat<N> copy_sign(vfloat<N> magnitude, vfloat<N> sign) {

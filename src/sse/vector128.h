@@ -60,6 +60,7 @@ inline vfloat<4> operator/(vfloat<4> a, vfloat<4> b) { return {simde_mm_div_ps(a
 inline vfloat<4> absolute(vfloat<4> a) {
   return {simde_mm_andnot_ps(simde_mm_set1_ps(-0.0f), a.value)};
 }
+inline vfloat<4> square_root(vfloat<4> a) { return {simde_mm_sqrt_ps(a.value)}; }
 /// The magnitude is not negative.
 inline vfloat<4> copy_sign(vfloat<4> magnitude, vfloat<4> sign) {
   return {simde_mm_or_ps(magnitude.value, simde_mm_and_ps(simde_mm_set1_ps(-0.0f), sign.value))};

@@ -41,6 +41,59 @@ static void check_ray_and_hit(void) {
   FIELD(kiwami_hit, instance_id, 32);
 }
 
+static void check_lights(void) {
+  SIZE(kiwami_light, 96);
+  FIELD(kiwami_light, type, 0);
+  FIELD(kiwami_light, flags, 4);
+  FIELD(kiwami_light, points, 8);
+  FIELD(kiwami_light, direction, 56);
+  FIELD(kiwami_light, radius, 68);
+  FIELD(kiwami_light, cos_inner, 72);
+  FIELD(kiwami_light, cos_outer, 76);
+  FIELD(kiwami_light, power, 80);
+  FIELD(kiwami_light, user_id, 84);
+  FIELD(kiwami_light, link_mask, 88);
+  SIZE(kiwami_light_tree_desc, 16);
+  FIELD(kiwami_light_tree_desc, struct_size, 0);
+  FIELD(kiwami_light_tree_desc, width, 4);
+  FIELD(kiwami_light_tree_desc, builder, 8);
+  FIELD(kiwami_light_tree_desc, distant_probability, 12);
+  SIZE(kiwami_light_tree_info, 64);
+  FIELD(kiwami_light_tree_info, struct_size, 0);
+  FIELD(kiwami_light_tree_info, width, 4);
+  FIELD(kiwami_light_tree_info, light_count, 8);
+  FIELD(kiwami_light_tree_info, instance_count, 12);
+  FIELD(kiwami_light_tree_info, distant_count, 16);
+  FIELD(kiwami_light_tree_info, node_count, 20);
+  FIELD(kiwami_light_tree_info, depth, 24);
+  FIELD(kiwami_light_tree_info, reserved, 28);
+  FIELD(kiwami_light_tree_info, bytes, 32);
+  FIELD(kiwami_light_tree_info, power, 40);
+  FIELD(kiwami_light_tree_info, cost, 48);
+  FIELD(kiwami_light_tree_info, build_seconds, 56);
+  SIZE(kiwami_light_receiver, 56);
+  FIELD(kiwami_light_receiver, position, 0);
+  FIELD(kiwami_light_receiver, normal, 12);
+  FIELD(kiwami_light_receiver, segment, 24);
+  FIELD(kiwami_light_receiver, flags, 36);
+  FIELD(kiwami_light_receiver, link_mask, 40);
+  FIELD(kiwami_light_receiver, random, 48);
+  SIZE(kiwami_light_choice, 24);
+  FIELD(kiwami_light_choice, light_id, 0);
+  FIELD(kiwami_light_choice, instance_id, 4);
+  FIELD(kiwami_light_choice, user_id, 8);
+  FIELD(kiwami_light_choice, probability, 12);
+  FIELD(kiwami_light_choice, random, 16);
+  SIZE(kiwami_light_name, 8);
+  FIELD(kiwami_light_name, light_id, 0);
+  FIELD(kiwami_light_name, instance_id, 4);
+  SIZE(kiwami_light_query, 16);
+  FIELD(kiwami_light_query, struct_size, 0);
+  FIELD(kiwami_light_query, flags, 4);
+  FIELD(kiwami_light_query, method, 8);
+  FIELD(kiwami_light_query, reserved, 12);
+}
+
 /* The structs that hold pointers: their layout is that of 64-bit machines. */
 static void check_device_and_mesh(void) {
   SIZE(kiwami_device_desc, 80);
@@ -315,6 +368,31 @@ static void check_files(void) {
   FIELD(kiwami_file_info, node_count, 48);
 }
 
+static void check_light_descs(void) {
+  SIZE(kiwami_light_mesh_desc, 96);
+  FIELD(kiwami_light_mesh_desc, struct_size, 0);
+  FIELD(kiwami_light_mesh_desc, flags, 4);
+  FIELD(kiwami_light_mesh_desc, vertices, 8);
+  FIELD(kiwami_light_mesh_desc, vertex_stride, 16);
+  FIELD(kiwami_light_mesh_desc, vertex_count, 24);
+  FIELD(kiwami_light_mesh_desc, indices, 32);
+  FIELD(kiwami_light_mesh_desc, index_stride, 40);
+  FIELD(kiwami_light_mesh_desc, triangle_count, 48);
+  FIELD(kiwami_light_mesh_desc, radiances, 56);
+  FIELD(kiwami_light_mesh_desc, radiance_stride, 64);
+  FIELD(kiwami_light_mesh_desc, link_mask, 72);
+  FIELD(kiwami_light_mesh_desc, radiance, 80);
+  FIELD(kiwami_light_mesh_desc, user_id, 84);
+  FIELD(kiwami_light_mesh_desc, user_id_step, 88);
+  FIELD(kiwami_light_mesh_desc, reserved, 92);
+  SIZE(kiwami_light_instance_desc, 72);
+  FIELD(kiwami_light_instance_desc, struct_size, 0);
+  FIELD(kiwami_light_instance_desc, power_scale, 4);
+  FIELD(kiwami_light_instance_desc, tree, 8);
+  FIELD(kiwami_light_instance_desc, local_to_world, 16);
+  FIELD(kiwami_light_instance_desc, link_mask, 64);
+}
+
 static void check_numbers(void) {
   expect("KIWAMI_ERROR_INVALID_ARGUMENT", (size_t)-KIWAMI_ERROR_INVALID_ARGUMENT, 1);
   expect("KIWAMI_ERROR_INVALID_STATE", (size_t)-KIWAMI_ERROR_INVALID_STATE, 2);
@@ -349,6 +427,18 @@ static void check_numbers(void) {
   expect("KIWAMI_PARAMETER_CURVE_CODE", KIWAMI_PARAMETER_CURVE_CODE, 18);
   expect("KIWAMI_PARAMETER_LBVH_DELTA", KIWAMI_PARAMETER_LBVH_DELTA, 19);
   expect("KIWAMI_PARAMETER_LBVH_CHUNK_SIZE", KIWAMI_PARAMETER_LBVH_CHUNK_SIZE, 20);
+  expect("KIWAMI_LIGHT_POINT", KIWAMI_LIGHT_POINT, 0);
+  expect("KIWAMI_LIGHT_SPOT", KIWAMI_LIGHT_SPOT, 1);
+  expect("KIWAMI_LIGHT_TRIANGLE", KIWAMI_LIGHT_TRIANGLE, 2);
+  expect("KIWAMI_LIGHT_QUAD", KIWAMI_LIGHT_QUAD, 3);
+  expect("KIWAMI_LIGHT_SPHERE", KIWAMI_LIGHT_SPHERE, 4);
+  expect("KIWAMI_LIGHT_DISC", KIWAMI_LIGHT_DISC, 5);
+  expect("KIWAMI_LIGHT_DISTANT", KIWAMI_LIGHT_DISTANT, 6);
+  expect("KIWAMI_LIGHT_ENVIRONMENT", KIWAMI_LIGHT_ENVIRONMENT, 7);
+  expect("KIWAMI_LIGHT_TWO_SIDED", KIWAMI_LIGHT_TWO_SIDED, 1);
+  expect("KIWAMI_LIGHT_BUILDER_OCTANTS", KIWAMI_LIGHT_BUILDER_OCTANTS, 1);
+  expect("KIWAMI_LIGHT_METHOD_TREE", KIWAMI_LIGHT_METHOD_TREE, 0);
+  expect("KIWAMI_RECEIVER_BOTH_SIDES", KIWAMI_RECEIVER_BOTH_SIDES, 1);
 }
 
 int main(void) {
@@ -357,12 +447,14 @@ int main(void) {
     check_device_and_mesh();
     check_fields();
     check_bvh_desc();
+    check_light_descs();
   }
   check_infos_and_query();
   check_bvh();
   check_measures();
   check_exported_nodes();
   check_files();
+  check_lights();
   check_numbers();
   return failures != 0;
 }

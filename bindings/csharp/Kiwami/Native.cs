@@ -393,6 +393,114 @@ internal unsafe struct kiwami_file_info {
   public const int Size = 56;
 }
 
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light {
+  public uint type;
+  public uint flags;
+  public fixed float points[12];
+  public fixed float direction[3];
+  public float radius;
+  public float cos_inner;
+  public float cos_outer;
+  public float power;
+  public uint user_id;
+  public ulong link_mask;
+  public const int Size = 96;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_mesh_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr vertices;
+  public ulong vertex_stride;
+  public ulong vertex_count;
+  public IntPtr indices;
+  public ulong index_stride;
+  public ulong triangle_count;
+  public IntPtr radiances;
+  public ulong radiance_stride;
+  public ulong link_mask;
+  public float radiance;
+  public uint user_id;
+  public uint user_id_step;
+  public uint reserved;
+  public const int Size = 96;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_instance_desc {
+  public uint struct_size;
+  public float power_scale;
+  public IntPtr tree;
+  public fixed float local_to_world[12];
+  public ulong link_mask;
+  public const int Size = 72;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_tree_desc {
+  public uint struct_size;
+  public uint width;
+  public uint builder;
+  public float distant_probability;
+  public const int Size = 16;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_tree_info {
+  public uint struct_size;
+  public uint width;
+  public uint light_count;
+  public uint instance_count;
+  public uint distant_count;
+  public uint node_count;
+  public uint depth;
+  public uint reserved;
+  public ulong bytes;
+  public double power;
+  public double cost;
+  public double build_seconds;
+  public const int Size = 64;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_receiver {
+  public fixed float position[3];
+  public fixed float normal[3];
+  public fixed float segment[3];
+  public uint flags;
+  public ulong link_mask;
+  public double random;
+  public const int Size = 56;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_choice {
+  public uint light_id;
+  public uint instance_id;
+  public uint user_id;
+  public float probability;
+  public double random;
+  public const int Size = 24;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_name {
+  public uint light_id;
+  public uint instance_id;
+  public const int Size = 8;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_query {
+  public uint struct_size;
+  public uint flags;
+  public uint method;
+  public uint reserved;
+  public const int Size = 16;
+}
+
 internal static class Native {
   const string Library = "kiwami";
 
@@ -487,6 +595,20 @@ internal static class Native {
   public const uint KIWAMI_FIT_NATIVE = 0;
   public const uint KIWAMI_FIT_SCALAR = 1;
   public const uint KIWAMI_FIT_NONE = 2;
+  public const uint KIWAMI_LIGHT_POINT = 0;
+  public const uint KIWAMI_LIGHT_SPOT = 1;
+  public const uint KIWAMI_LIGHT_TRIANGLE = 2;
+  public const uint KIWAMI_LIGHT_QUAD = 3;
+  public const uint KIWAMI_LIGHT_SPHERE = 4;
+  public const uint KIWAMI_LIGHT_DISC = 5;
+  public const uint KIWAMI_LIGHT_DISTANT = 6;
+  public const uint KIWAMI_LIGHT_ENVIRONMENT = 7;
+  public const uint KIWAMI_LIGHT_TWO_SIDED = 1;
+  public const uint KIWAMI_LIGHT_BUILDER_SAOH = 0;
+  public const uint KIWAMI_LIGHT_BUILDER_OCTANTS = 1;
+  public const uint KIWAMI_RECEIVER_BOTH_SIDES = 1;
+  public const uint KIWAMI_LIGHT_METHOD_TREE = 0;
+  public const uint KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern uint kiwami_version();
@@ -670,5 +792,59 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_file_get_info(IntPtr device, IntPtr desc, IntPtr info);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_mesh_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_instance_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_query_init(IntPtr query, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_create(IntPtr device, IntPtr desc, IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_light_tree_retain(IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_light_tree_release(IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_add_lights(IntPtr tree, IntPtr lights, UIntPtr stride, UIntPtr count, IntPtr first_id);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_add_mesh(IntPtr tree, IntPtr desc, IntPtr first_id);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_add_instance(IntPtr tree, IntPtr desc, IntPtr instance_id);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_set_lights(IntPtr tree, uint first, IntPtr lights, UIntPtr stride, UIntPtr count);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_set_powers(IntPtr tree, uint first, IntPtr powers, UIntPtr stride, UIntPtr count);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_set_instance(IntPtr tree, uint instance_id, IntPtr desc);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_commit(IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_refit(IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_get_info(IntPtr tree, IntPtr info);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_sample(IntPtr tree, IntPtr receivers, UIntPtr receiver_stride, IntPtr choices, UIntPtr choice_stride, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_pdf(IntPtr tree, IntPtr receivers, UIntPtr receiver_stride, IntPtr lights, UIntPtr light_stride, IntPtr probabilities, UIntPtr probability_stride, UIntPtr count, IntPtr query);
 }
 }

@@ -95,6 +95,20 @@ KIWAMI_FILE_BVH = 2
 KIWAMI_FIT_NATIVE = 0
 KIWAMI_FIT_SCALAR = 1
 KIWAMI_FIT_NONE = 2
+KIWAMI_LIGHT_POINT = 0
+KIWAMI_LIGHT_SPOT = 1
+KIWAMI_LIGHT_TRIANGLE = 2
+KIWAMI_LIGHT_QUAD = 3
+KIWAMI_LIGHT_SPHERE = 4
+KIWAMI_LIGHT_DISC = 5
+KIWAMI_LIGHT_DISTANT = 6
+KIWAMI_LIGHT_ENVIRONMENT = 7
+KIWAMI_LIGHT_TWO_SIDED = 1
+KIWAMI_LIGHT_BUILDER_SAOH = 0
+KIWAMI_LIGHT_BUILDER_OCTANTS = 1
+KIWAMI_RECEIVER_BOTH_SIDES = 1
+KIWAMI_LIGHT_METHOD_TREE = 0
+KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1
 
 kiwami_parallel_task = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)
 
@@ -493,6 +507,114 @@ class kiwami_file_info(ctypes.Structure):
     ]
 
 
+class kiwami_light(ctypes.Structure):
+    _fields_ = [
+        ("type", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("points", ctypes.c_float * 12),
+        ("direction", ctypes.c_float * 3),
+        ("radius", ctypes.c_float),
+        ("cos_inner", ctypes.c_float),
+        ("cos_outer", ctypes.c_float),
+        ("power", ctypes.c_float),
+        ("user_id", ctypes.c_uint32),
+        ("link_mask", ctypes.c_uint64),
+    ]
+
+
+class kiwami_light_mesh_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("vertices", ctypes.c_void_p),
+        ("vertex_stride", ctypes.c_uint64),
+        ("vertex_count", ctypes.c_uint64),
+        ("indices", ctypes.c_void_p),
+        ("index_stride", ctypes.c_uint64),
+        ("triangle_count", ctypes.c_uint64),
+        ("radiances", ctypes.c_void_p),
+        ("radiance_stride", ctypes.c_uint64),
+        ("link_mask", ctypes.c_uint64),
+        ("radiance", ctypes.c_float),
+        ("user_id", ctypes.c_uint32),
+        ("user_id_step", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
+class kiwami_light_instance_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("power_scale", ctypes.c_float),
+        ("tree", ctypes.c_void_p),
+        ("local_to_world", ctypes.c_float * 12),
+        ("link_mask", ctypes.c_uint64),
+    ]
+
+
+class kiwami_light_tree_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("width", ctypes.c_uint32),
+        ("builder", ctypes.c_uint32),
+        ("distant_probability", ctypes.c_float),
+    ]
+
+
+class kiwami_light_tree_info(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("width", ctypes.c_uint32),
+        ("light_count", ctypes.c_uint32),
+        ("instance_count", ctypes.c_uint32),
+        ("distant_count", ctypes.c_uint32),
+        ("node_count", ctypes.c_uint32),
+        ("depth", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+        ("bytes", ctypes.c_uint64),
+        ("power", ctypes.c_double),
+        ("cost", ctypes.c_double),
+        ("build_seconds", ctypes.c_double),
+    ]
+
+
+class kiwami_light_receiver(ctypes.Structure):
+    _fields_ = [
+        ("position", ctypes.c_float * 3),
+        ("normal", ctypes.c_float * 3),
+        ("segment", ctypes.c_float * 3),
+        ("flags", ctypes.c_uint32),
+        ("link_mask", ctypes.c_uint64),
+        ("random", ctypes.c_double),
+    ]
+
+
+class kiwami_light_choice(ctypes.Structure):
+    _fields_ = [
+        ("light_id", ctypes.c_uint32),
+        ("instance_id", ctypes.c_uint32),
+        ("user_id", ctypes.c_uint32),
+        ("probability", ctypes.c_float),
+        ("random", ctypes.c_double),
+    ]
+
+
+class kiwami_light_name(ctypes.Structure):
+    _fields_ = [
+        ("light_id", ctypes.c_uint32),
+        ("instance_id", ctypes.c_uint32),
+    ]
+
+
+class kiwami_light_query(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("method", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
 SIZES = {
     kiwami_device_desc: 80,
     kiwami_device_info: 32,
@@ -522,6 +644,15 @@ SIZES = {
     kiwami_save_desc: 48,
     kiwami_load_desc: 56,
     kiwami_file_info: 56,
+    kiwami_light: 96,
+    kiwami_light_mesh_desc: 96,
+    kiwami_light_instance_desc: 72,
+    kiwami_light_tree_desc: 16,
+    kiwami_light_tree_info: 64,
+    kiwami_light_receiver: 56,
+    kiwami_light_choice: 24,
+    kiwami_light_name: 8,
+    kiwami_light_query: 16,
 }
 
 
@@ -782,3 +913,91 @@ def declare(library):
     library.kiwami_bvh_load.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
     library.kiwami_file_get_info.restype = ctypes.c_int32
     library.kiwami_file_get_info.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_light_tree_desc_init.restype = ctypes.c_int32
+    library.kiwami_light_tree_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_light_mesh_desc_init.restype = ctypes.c_int32
+    library.kiwami_light_mesh_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_light_instance_desc_init.restype = ctypes.c_int32
+    library.kiwami_light_instance_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_light_query_init.restype = ctypes.c_int32
+    library.kiwami_light_query_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_light_tree_create.restype = ctypes.c_int32
+    library.kiwami_light_tree_create.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_light_tree_retain.restype = None
+    library.kiwami_light_tree_retain.argtypes = [ctypes.c_void_p]
+    library.kiwami_light_tree_release.restype = None
+    library.kiwami_light_tree_release.argtypes = [ctypes.c_void_p]
+    library.kiwami_light_tree_add_lights.restype = ctypes.c_int32
+    library.kiwami_light_tree_add_lights.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_light_tree_add_mesh.restype = ctypes.c_int32
+    library.kiwami_light_tree_add_mesh.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_light_tree_add_instance.restype = ctypes.c_int32
+    library.kiwami_light_tree_add_instance.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_light_tree_set_lights.restype = ctypes.c_int32
+    library.kiwami_light_tree_set_lights.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_uint32,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_size_t,
+    ]
+    library.kiwami_light_tree_set_powers.restype = ctypes.c_int32
+    library.kiwami_light_tree_set_powers.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_uint32,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_size_t,
+    ]
+    library.kiwami_light_tree_set_instance.restype = ctypes.c_int32
+    library.kiwami_light_tree_set_instance.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_uint32,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_light_tree_commit.restype = ctypes.c_int32
+    library.kiwami_light_tree_commit.argtypes = [ctypes.c_void_p]
+    library.kiwami_light_tree_refit.restype = ctypes.c_int32
+    library.kiwami_light_tree_refit.argtypes = [ctypes.c_void_p]
+    library.kiwami_light_tree_get_info.restype = ctypes.c_int32
+    library.kiwami_light_tree_get_info.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_light_sample.restype = ctypes.c_int32
+    library.kiwami_light_sample.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_light_pdf.restype = ctypes.c_int32
+    library.kiwami_light_pdf.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]

@@ -99,6 +99,20 @@ pub const KIWAMI_FILE_BVH: u32 = 2;
 pub const KIWAMI_FIT_NATIVE: u32 = 0;
 pub const KIWAMI_FIT_SCALAR: u32 = 1;
 pub const KIWAMI_FIT_NONE: u32 = 2;
+pub const KIWAMI_LIGHT_POINT: u32 = 0;
+pub const KIWAMI_LIGHT_SPOT: u32 = 1;
+pub const KIWAMI_LIGHT_TRIANGLE: u32 = 2;
+pub const KIWAMI_LIGHT_QUAD: u32 = 3;
+pub const KIWAMI_LIGHT_SPHERE: u32 = 4;
+pub const KIWAMI_LIGHT_DISC: u32 = 5;
+pub const KIWAMI_LIGHT_DISTANT: u32 = 6;
+pub const KIWAMI_LIGHT_ENVIRONMENT: u32 = 7;
+pub const KIWAMI_LIGHT_TWO_SIDED: u32 = 1;
+pub const KIWAMI_LIGHT_BUILDER_SAOH: u32 = 0;
+pub const KIWAMI_LIGHT_BUILDER_OCTANTS: u32 = 1;
+pub const KIWAMI_RECEIVER_BOTH_SIDES: u32 = 1;
+pub const KIWAMI_LIGHT_METHOD_TREE: u32 = 0;
+pub const KIWAMI_LIGHT_QUERY_CALLING_THREAD: u32 = 1;
 
 #[repr(C)]
 pub struct kiwami_bvh {
@@ -112,6 +126,11 @@ pub struct kiwami_device {
 
 #[repr(C)]
 pub struct kiwami_geometry {
+    _private: [u8; 0],
+}
+
+#[repr(C)]
+pub struct kiwami_light_tree {
     _private: [u8; 0],
 }
 
@@ -534,6 +553,123 @@ pub struct kiwami_file_info {
 }
 const _: () = assert!(std::mem::size_of::<kiwami_file_info>() == 56);
 
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_light {
+    pub r#type: u32,
+    pub flags: u32,
+    pub points: [f32; 12],
+    pub direction: [f32; 3],
+    pub radius: f32,
+    pub cos_inner: f32,
+    pub cos_outer: f32,
+    pub power: f32,
+    pub user_id: u32,
+    pub link_mask: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light>() == 96);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_light_mesh_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub vertices: *const c_void,
+    pub vertex_stride: u64,
+    pub vertex_count: u64,
+    pub indices: *const c_void,
+    pub index_stride: u64,
+    pub triangle_count: u64,
+    pub radiances: *const c_void,
+    pub radiance_stride: u64,
+    pub link_mask: u64,
+    pub radiance: f32,
+    pub user_id: u32,
+    pub user_id_step: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_mesh_desc>() == 96);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_light_instance_desc {
+    pub struct_size: u32,
+    pub power_scale: f32,
+    pub tree: *mut kiwami_light_tree,
+    pub local_to_world: [f32; 12],
+    pub link_mask: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_instance_desc>() == 72);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_light_tree_desc {
+    pub struct_size: u32,
+    pub width: u32,
+    pub builder: u32,
+    pub distant_probability: f32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_tree_desc>() == 16);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_light_tree_info {
+    pub struct_size: u32,
+    pub width: u32,
+    pub light_count: u32,
+    pub instance_count: u32,
+    pub distant_count: u32,
+    pub node_count: u32,
+    pub depth: u32,
+    pub reserved: u32,
+    pub bytes: u64,
+    pub power: f64,
+    pub cost: f64,
+    pub build_seconds: f64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_tree_info>() == 64);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_light_receiver {
+    pub position: [f32; 3],
+    pub normal: [f32; 3],
+    pub segment: [f32; 3],
+    pub flags: u32,
+    pub link_mask: u64,
+    pub random: f64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_receiver>() == 56);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_light_choice {
+    pub light_id: u32,
+    pub instance_id: u32,
+    pub user_id: u32,
+    pub probability: f32,
+    pub random: f64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_choice>() == 24);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_light_name {
+    pub light_id: u32,
+    pub instance_id: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_name>() == 8);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_light_query {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub method: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 16);
+
 extern "C" {
     pub fn kiwami_version() -> u32;
     pub fn kiwami_abi_version() -> u32;
@@ -596,4 +732,22 @@ extern "C" {
     pub fn kiwami_bvh_save(bvh: *const kiwami_bvh, desc: *const kiwami_save_desc, bytes: *mut u64) -> kiwami_result;
     pub fn kiwami_bvh_load(device: *mut kiwami_device, desc: *const kiwami_load_desc, bvh: *mut *mut kiwami_bvh) -> kiwami_result;
     pub fn kiwami_file_get_info(device: *mut kiwami_device, desc: *const kiwami_load_desc, info: *mut kiwami_file_info) -> kiwami_result;
+    pub fn kiwami_light_tree_desc_init(desc: *mut kiwami_light_tree_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_light_mesh_desc_init(desc: *mut kiwami_light_mesh_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_light_instance_desc_init(desc: *mut kiwami_light_instance_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_light_query_init(query: *mut kiwami_light_query, size: usize) -> kiwami_result;
+    pub fn kiwami_light_tree_create(device: *mut kiwami_device, desc: *const kiwami_light_tree_desc, tree: *mut *mut kiwami_light_tree) -> kiwami_result;
+    pub fn kiwami_light_tree_retain(tree: *mut kiwami_light_tree);
+    pub fn kiwami_light_tree_release(tree: *mut kiwami_light_tree);
+    pub fn kiwami_light_tree_add_lights(tree: *mut kiwami_light_tree, lights: *const kiwami_light, stride: usize, count: usize, first_id: *mut u32) -> kiwami_result;
+    pub fn kiwami_light_tree_add_mesh(tree: *mut kiwami_light_tree, desc: *const kiwami_light_mesh_desc, first_id: *mut u32) -> kiwami_result;
+    pub fn kiwami_light_tree_add_instance(tree: *mut kiwami_light_tree, desc: *const kiwami_light_instance_desc, instance_id: *mut u32) -> kiwami_result;
+    pub fn kiwami_light_tree_set_lights(tree: *mut kiwami_light_tree, first: u32, lights: *const kiwami_light, stride: usize, count: usize) -> kiwami_result;
+    pub fn kiwami_light_tree_set_powers(tree: *mut kiwami_light_tree, first: u32, powers: *const f32, stride: usize, count: usize) -> kiwami_result;
+    pub fn kiwami_light_tree_set_instance(tree: *mut kiwami_light_tree, instance_id: u32, desc: *const kiwami_light_instance_desc) -> kiwami_result;
+    pub fn kiwami_light_tree_commit(tree: *mut kiwami_light_tree) -> kiwami_result;
+    pub fn kiwami_light_tree_refit(tree: *mut kiwami_light_tree) -> kiwami_result;
+    pub fn kiwami_light_tree_get_info(tree: *const kiwami_light_tree, info: *mut kiwami_light_tree_info) -> kiwami_result;
+    pub fn kiwami_light_sample(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, choices: *mut kiwami_light_choice, choice_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
+    pub fn kiwami_light_pdf(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, lights: *const kiwami_light_name, light_stride: usize, probabilities: *mut f32, probability_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
 }

@@ -100,6 +100,20 @@ final class Native {
   static final int KIWAMI_FIT_NATIVE = 0;
   static final int KIWAMI_FIT_SCALAR = 1;
   static final int KIWAMI_FIT_NONE = 2;
+  static final int KIWAMI_LIGHT_POINT = 0;
+  static final int KIWAMI_LIGHT_SPOT = 1;
+  static final int KIWAMI_LIGHT_TRIANGLE = 2;
+  static final int KIWAMI_LIGHT_QUAD = 3;
+  static final int KIWAMI_LIGHT_SPHERE = 4;
+  static final int KIWAMI_LIGHT_DISC = 5;
+  static final int KIWAMI_LIGHT_DISTANT = 6;
+  static final int KIWAMI_LIGHT_ENVIRONMENT = 7;
+  static final int KIWAMI_LIGHT_TWO_SIDED = 1;
+  static final int KIWAMI_LIGHT_BUILDER_SAOH = 0;
+  static final int KIWAMI_LIGHT_BUILDER_OCTANTS = 1;
+  static final int KIWAMI_RECEIVER_BOTH_SIDES = 1;
+  static final int KIWAMI_LIGHT_METHOD_TREE = 0;
+  static final int KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
 
   /** Offsets of kiwami_device_desc. */
   static final class DeviceDesc {
@@ -466,6 +480,114 @@ final class Native {
     static final int NODE_COUNT = 48;
   }
 
+  /** Offsets of kiwami_light. */
+  static final class Light {
+    static final int STRUCT_BYTES = 96;
+    static final int TYPE = 0;
+    static final int FLAGS = 4;
+    static final int POINTS = 8;
+    static final int DIRECTION = 56;
+    static final int RADIUS = 68;
+    static final int COS_INNER = 72;
+    static final int COS_OUTER = 76;
+    static final int POWER = 80;
+    static final int USER_ID = 84;
+    static final int LINK_MASK = 88;
+  }
+
+  /** Offsets of kiwami_light_mesh_desc. */
+  static final class LightMeshDesc {
+    static final int STRUCT_BYTES = 96;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int VERTICES = 8;
+    static final int VERTEX_STRIDE = 16;
+    static final int VERTEX_COUNT = 24;
+    static final int INDICES = 32;
+    static final int INDEX_STRIDE = 40;
+    static final int TRIANGLE_COUNT = 48;
+    static final int RADIANCES = 56;
+    static final int RADIANCE_STRIDE = 64;
+    static final int LINK_MASK = 72;
+    static final int RADIANCE = 80;
+    static final int USER_ID = 84;
+    static final int USER_ID_STEP = 88;
+    static final int RESERVED = 92;
+  }
+
+  /** Offsets of kiwami_light_instance_desc. */
+  static final class LightInstanceDesc {
+    static final int STRUCT_BYTES = 72;
+    static final int STRUCT_SIZE = 0;
+    static final int POWER_SCALE = 4;
+    static final int TREE = 8;
+    static final int LOCAL_TO_WORLD = 16;
+    static final int LINK_MASK = 64;
+  }
+
+  /** Offsets of kiwami_light_tree_desc. */
+  static final class LightTreeDesc {
+    static final int STRUCT_BYTES = 16;
+    static final int STRUCT_SIZE = 0;
+    static final int WIDTH = 4;
+    static final int BUILDER = 8;
+    static final int DISTANT_PROBABILITY = 12;
+  }
+
+  /** Offsets of kiwami_light_tree_info. */
+  static final class LightTreeInfo {
+    static final int STRUCT_BYTES = 64;
+    static final int STRUCT_SIZE = 0;
+    static final int WIDTH = 4;
+    static final int LIGHT_COUNT = 8;
+    static final int INSTANCE_COUNT = 12;
+    static final int DISTANT_COUNT = 16;
+    static final int NODE_COUNT = 20;
+    static final int DEPTH = 24;
+    static final int RESERVED = 28;
+    static final int BYTES = 32;
+    static final int POWER = 40;
+    static final int COST = 48;
+    static final int BUILD_SECONDS = 56;
+  }
+
+  /** Offsets of kiwami_light_receiver. */
+  static final class LightReceiver {
+    static final int STRUCT_BYTES = 56;
+    static final int POSITION = 0;
+    static final int NORMAL = 12;
+    static final int SEGMENT = 24;
+    static final int FLAGS = 36;
+    static final int LINK_MASK = 40;
+    static final int RANDOM = 48;
+  }
+
+  /** Offsets of kiwami_light_choice. */
+  static final class LightChoice {
+    static final int STRUCT_BYTES = 24;
+    static final int LIGHT_ID = 0;
+    static final int INSTANCE_ID = 4;
+    static final int USER_ID = 8;
+    static final int PROBABILITY = 12;
+    static final int RANDOM = 16;
+  }
+
+  /** Offsets of kiwami_light_name. */
+  static final class LightName {
+    static final int STRUCT_BYTES = 8;
+    static final int LIGHT_ID = 0;
+    static final int INSTANCE_ID = 4;
+  }
+
+  /** Offsets of kiwami_light_query. */
+  static final class LightQuery {
+    static final int STRUCT_BYTES = 16;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int METHOD = 8;
+    static final int RESERVED = 12;
+  }
+
   static {
     com.sun.jna.Native.register(LibraryFile.path());
   }
@@ -591,4 +713,40 @@ final class Native {
   static native int kiwami_bvh_load(Pointer device, Pointer desc, Pointer bvh);
 
   static native int kiwami_file_get_info(Pointer device, Pointer desc, Pointer info);
+
+  static native int kiwami_light_tree_desc_init(Pointer desc, long size);
+
+  static native int kiwami_light_mesh_desc_init(Pointer desc, long size);
+
+  static native int kiwami_light_instance_desc_init(Pointer desc, long size);
+
+  static native int kiwami_light_query_init(Pointer query, long size);
+
+  static native int kiwami_light_tree_create(Pointer device, Pointer desc, Pointer tree);
+
+  static native void kiwami_light_tree_retain(Pointer tree);
+
+  static native void kiwami_light_tree_release(Pointer tree);
+
+  static native int kiwami_light_tree_add_lights(Pointer tree, Pointer lights, long stride, long count, Pointer firstId);
+
+  static native int kiwami_light_tree_add_mesh(Pointer tree, Pointer desc, Pointer firstId);
+
+  static native int kiwami_light_tree_add_instance(Pointer tree, Pointer desc, Pointer instanceId);
+
+  static native int kiwami_light_tree_set_lights(Pointer tree, int first, Pointer lights, long stride, long count);
+
+  static native int kiwami_light_tree_set_powers(Pointer tree, int first, Pointer powers, long stride, long count);
+
+  static native int kiwami_light_tree_set_instance(Pointer tree, int instanceId, Pointer desc);
+
+  static native int kiwami_light_tree_commit(Pointer tree);
+
+  static native int kiwami_light_tree_refit(Pointer tree);
+
+  static native int kiwami_light_tree_get_info(Pointer tree, Pointer info);
+
+  static native int kiwami_light_sample(Pointer tree, Pointer receivers, long receiverStride, Pointer choices, long choiceStride, long count, Pointer query);
+
+  static native int kiwami_light_pdf(Pointer tree, Pointer receivers, long receiverStride, Pointer lights, long lightStride, Pointer probabilities, long probabilityStride, long count, Pointer query);
 }

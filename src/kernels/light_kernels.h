@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an ISA offers for trees over lights. Plain data only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kiwami/light.h"
+#include "lights/light_node.h"
+
+namespace kiwami {
+
+/// Strided runs of receivers, of names (where probabilities are asked for) and of answers, at any
+/// address.
+struct LightBatch {
+  const unsigned char* receivers;  ///< kiwami_light_receiver
+  size_t receiver_stride;
+  const unsigned char* names;  ///< kiwami_light_name; pdf alone reads it
+  size_t name_stride;
+  unsigned char* answers;  ///< kiwami_light_choice, or float from pdf
+  size_t answer_stride;
+  size_t count;
+};
+
+using LightKernel = void (*)(const LightTreeView& tree, const LightBatch& batch);
+
+/// The kernels of one tree width; all null where the ISA has none.
+struct LightKernels {
+  LightKernel sample;  ///< one choice a receiver
+  LightKernel pdf;     ///< the probability with which sample makes it
+};
+
+}  // namespace kiwami
