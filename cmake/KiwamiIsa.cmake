@@ -12,6 +12,27 @@ set(KIWAMI_AVX2_FEATURES -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt -mf16c)
 set(KIWAMI_AVX512_FEATURES ${KIWAMI_AVX2_FEATURES} -mavx512f -mavx512cd -mavx512bw -mavx512dq
                            -mavx512vl)
 
+# What each instruction set has its own kernels for, and the files of kernels: one a width, in
+# src/<isa>/<file>_w<width>.cpp.
+set(KIWAMI_SCALAR_WIDTHS 4 8 16)
+set(KIWAMI_SSE_WIDTHS 4)
+set(KIWAMI_AVX2_WIDTHS 4 8)
+set(KIWAMI_AVX512_WIDTHS 8 16)
+set(KIWAMI_KERNEL_FILES kernels compact general multi_hit)
+
+# Sets `result` to the sources of an instruction set.
+function(kiwami_isa_sources isa result)
+  string(TOUPPER ${isa} upper)
+  set(sources ${PROJECT_SOURCE_DIR}/src/${isa}/kernel_table.cpp
+              ${PROJECT_SOURCE_DIR}/src/${isa}/light_kernels.cpp)
+  foreach(file IN LISTS KIWAMI_KERNEL_FILES)
+    foreach(width IN LISTS KIWAMI_${upper}_WIDTHS)
+      list(APPEND sources ${PROJECT_SOURCE_DIR}/src/${isa}/${file}_w${width}.cpp)
+    endforeach()
+  endforeach()
+  set(${result} ${sources} PARENT_SCOPE)
+endfunction()
+
 function(kiwami_add_isa isa)
   cmake_parse_arguments(ARG "" "" "SOURCES;FEATURES" ${ARGN})
   set(target kiwami_isa_${isa})

@@ -45,8 +45,17 @@ enum {
                                       * ones, by the shape of the scene and the size of boxes */
   KIWAMI_PARAMETER_LBVH_DELTA = 19,  /* neighbours are parted 0: by codes; 1: by surface area */
   KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20, /* neighbours that a leaf begins with at most, 1 to 16 */
+  KIWAMI_PARAMETER_LAYOUT = 21,          /* what leaves hold of triangles: KIWAMI_LAYOUT_* */
   KIWAMI_PARAMETER_QUALITY = 30 /* KIWAMI_QUALITY_*: sets builder, optimisers and contraction at
                                  * once; what is set after it replaces its part */
+};
+
+/* What the leaves of a committed scene hold of its triangle meshes, by KIWAMI_PARAMETER_LAYOUT. The
+ * answers are the same. */
+enum {
+  KIWAMI_LAYOUT_FAST = 0,   /* vertices and numbers, 40 bytes a triangle; the default */
+  KIWAMI_LAYOUT_COMPACT = 1 /* numbers alone, 4 bytes a triangle: rays read the meshes' buffers,
+                             * shared or copied */
 };
 
 /* The stages of a build that have several methods. */

@@ -127,6 +127,25 @@ inline void store_rows(const vfloat<8> (&columns)[4], Target* const* targets, si
     put(i + 4, simde_mm256_extractf128_ps(row[i], 1));
   }
 }
+inline simde__m128 load_three(const unsigned char* from) {
+  return simde_mm_maskload_ps(reinterpret_cast<const float*>(from),
+                              simde_mm_set_epi32(0, -1, -1, -1));
+}
+inline void gather_rows(const unsigned char* const (&rows)[4], vfloat<4> (&columns)[3]) {
+  simde__m128 row[4], column[4];
+  for (int i = 0; i < 4; ++i) row[i] = load_three(rows[i]);
+  transpose(row, column);
+  for (int k = 0; k < 3; ++k) columns[k].value = column[k];
+}
+inline void gather_rows(const unsigned char* const (&rows)[8], vfloat<8> (&columns)[3]) {
+  simde__m256 row[4], column[4];
+  for (int i = 0; i < 4; ++i) {
+    row[i] = simde_mm256_insertf128_ps(simde_mm256_castps128_ps256(load_three(rows[i])),
+                                       load_three(rows[i + 4]), 1);
+  }
+  transpose(row, column);
+  for (int k = 0; k < 3; ++k) columns[k].value = column[k];
+}
 inline float least_lane(vfloat<8> a) {
   return least_lane(vfloat<4>{simde_mm_min_ps(simde_mm256_castps256_ps128(a.value),
                                               simde_mm256_extractf128_ps(a.value, 1))});

@@ -4,6 +4,7 @@
 extern "C" void KIWAMI_KERNEL_TABLE_GETTER(kiwami::KernelTable* table) {
   using namespace kiwami;
   *table = {KIWAMI_ISA_AVX512,
-            {TraversalKernels{}, KIWAMI_ISA::all_kernels_w8(), KIWAMI_ISA::all_kernels_w16()}};
+            {TraversalKernels{}, KIWAMI_ISA::all_kernels_w8(), KIWAMI_ISA::all_kernels_w16()},
+            {TraversalKernels{}, KIWAMI_ISA::compact_w8(), KIWAMI_ISA::compact_w16()}};
   KIWAMI_ISA::set_light_kernels(table->lights);
 }

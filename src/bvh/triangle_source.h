@@ -21,6 +21,11 @@ struct TriangleMeshView {
   uint32_t geometry_id;
   uint32_t mask;
 
+  /// From the first to the last element of its buffers, whatever stands between elements.
+  size_t bytes() const {
+    return vertex_count * vertex_stride + (indices ? triangle_count * index_stride : 0);
+  }
+
   void indices_of(uint32_t primitive, uint32_t corner[3]) const {
     if (indices) {
       std::memcpy(corner, indices + primitive * index_stride, 3 * sizeof(uint32_t));

@@ -64,9 +64,9 @@ CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometrie
   const auto start = std::chrono::steady_clock::now();
   number_triangles(geometries, count);
   const uint32_t width = width_of(parameters, device);
-  kernels_ = kernels_of(device.isa(), width);
   tree_.width = width;
   build(parameters, rays);
+  kernels_ = kernels_of(device.isa(), width, tree_.leaf_layout);
   describe();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   info_.build_seconds = seconds.count();
@@ -81,7 +81,7 @@ CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometrie
       tree_(std::move(saved.tree)),
       triangle_count_(static_cast<size_t>(saved.triangle_count)) {
   number_triangles(geometries, count);
-  kernels_ = kernels_of(device.isa(), tree_.width);
+  kernels_ = kernels_of(device.isa(), tree_.width, tree_.leaf_layout);
   show_tree(saved.bounds);
   describe();
   info_.total_bytes += tree_.memory.bytes();
@@ -159,6 +159,8 @@ void CommittedScene::show_tree(const Bounds& bounds) {
   view_.tree = tree_.view;
   view_.ranges = ranges_.data();
   view_.range_count = static_cast<uint32_t>(ranges_.size());
+  view_.meshes = mesh_views_.data();
+  for (const TriangleMeshView& mesh : mesh_views_) view_.mesh_bytes += mesh.bytes();
   for (int axis = 0; axis < 3; ++axis) {
     info_.bounds_min[axis] = bounds.lower[axis];
     info_.bounds_max[axis] = bounds.upper[axis];

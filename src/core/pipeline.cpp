@@ -281,6 +281,9 @@ uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width) 
 WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t width) {
   WideTreeConfig config;
   config.width = width;
+  config.leaf_layout = parameters.whole(KIWAMI_PARAMETER_LAYOUT) == KIWAMI_LAYOUT_COMPACT
+                           ? LeafLayout::kIndices
+                           : LeafLayout::kTriangles;
   config.contraction = contraction_of(parameters);
   config.max_leaf_size = leaf_size_of(parameters, width);
   config.merge_leaves = parameters.whole(KIWAMI_PARAMETER_MERGE_LEAVES) != 0;

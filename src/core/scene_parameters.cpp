@@ -37,6 +37,7 @@ constexpr NumberedBounds kBounds[] = {
     {KIWAMI_PARAMETER_CURVE_CODE, {0, 1, 0, true}},
     {KIWAMI_PARAMETER_LBVH_DELTA, {0, 1, 0, true}},
     {KIWAMI_PARAMETER_LBVH_CHUNK_SIZE, {1, 16, 1, true}},
+    {KIWAMI_PARAMETER_LAYOUT, {0, 1, KIWAMI_LAYOUT_FAST, true}},
     {KIWAMI_PARAMETER_QUALITY, {0, 2, KIWAMI_QUALITY_BALANCED, true}},
 };
 

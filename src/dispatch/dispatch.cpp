@@ -63,9 +63,9 @@ uint32_t best_isa() {
   return 31u - static_cast<uint32_t>(__builtin_clz(usable));
 }
 
-TraversalKernels kernels_of(uint32_t isa, uint32_t width) {
-  const TraversalKernels kernels = table_of(isa).of_width(width);
-  return kernels.closest_hit ? kernels : table_of(KIWAMI_ISA_SCALAR).of_width(width);
+TraversalKernels kernels_of(uint32_t isa, uint32_t width, LeafLayout layout) {
+  const TraversalKernels kernels = table_of(isa).of(width, layout);
+  return kernels.closest_hit ? kernels : table_of(KIWAMI_ISA_SCALAR).of(width, layout);
 }
 
 LightKernels light_kernels_of(uint32_t isa, uint32_t width) {
@@ -77,7 +77,7 @@ uint32_t native_widths_of(uint32_t isa) {
   const KernelTable table = table_of(isa);
   uint32_t widths = 0;
   for (uint32_t width = 4; width <= 16; width *= 2) {
-    if (table.of_width(width).closest_hit) widths |= 1u << width;
+    if (table.of(width, LeafLayout::kTriangles).closest_hit) widths |= 1u << width;
   }
   return widths;
 }

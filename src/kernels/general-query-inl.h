@@ -48,7 +48,7 @@ inline bool is_before(const HitPlace& a, const HitPlace& b) {
 /// What general queries share. The scene and the ray are those of the current level; a distance is
 /// the same at each.
 template <int N>
-struct GeneralQuery : QueryBase<N> {
+struct GeneralQuery : QueryBase<N, AnyLeaves<N>> {
   QueryOptions options;  ///< of this ray
   InstancePath path;
 

@@ -100,11 +100,14 @@ struct TraversalKernels {
 
 struct KernelTable {
   uint32_t isa;                   ///< KIWAMI_ISA_*
-  TraversalKernels traversal[3];  ///< widths 4, 8, 16
+  TraversalKernels traversal[3];  ///< widths 4, 8, 16; of trees whose leaves hold triangles
+  TraversalKernels compact[3];    ///< the same of leaves of ids alone
   LightKernels lights[4] = {};    ///< widths 2, 4, 8, 16
 
-  const TraversalKernels& of_width(uint32_t width) const {
-    return traversal[width == 4 ? 0 : width == 8 ? 1 : 2];
+  const TraversalKernels& of(uint32_t width, LeafLayout layout) const {
+    return (layout == LeafLayout::kTriangles ? traversal : compact)[width == 4   ? 0
+                                                                    : width == 8 ? 1
+                                                                                 : 2];
   }
   const LightKernels& lights_of_width(uint32_t width) const {
     return lights[width == 2 ? 0 : width == 4 ? 1 : width == 8 ? 2 : 3];

@@ -121,7 +121,7 @@ template <typename Query, int N>
 inline void trace_alone(const SceneView& scene, const StreamWaiting<N>& waiting,
                         const RayBatch& batch) {
   const int size = waiting.count < kStreamSize ? waiting.count : kStreamSize;
-  if (scene.tree.memory_bytes >= kLeastInterleavedBytes) {
+  if (Query::Leaves::bytes_of(scene) >= kLeastInterleavedBytes) {
     trace_interleaved<Query, N>(scene, waiting.rays, size, [&](int i, const Query& query) {
       write_answer(batch, waiting.index[i], query.answer());
     });
@@ -186,10 +186,11 @@ void trace_counted(const SceneView& scene, const RayBatch& batch, TraversalCount
   }
 }
 
-template <int N>
+template <int N, typename Leaves = StoredLeaves<N>>
 inline TraversalKernels kernels_of_width() {
-  return {trace<ClosestHitQuery<N>, N>, trace<AnyHitQuery<N>, N>, trace<AllHitsQuery<N>, N>,
-          trace_counted<ClosestHitQuery<N>, N>, trace_counted<AnyHitQuery<N>, N>};
+  return {trace<ClosestHitQuery<N, Leaves>, N>, trace<AnyHitQuery<N, Leaves>, N>,
+          trace<AllHitsQuery<N, Leaves>, N>, trace_counted<ClosestHitQuery<N, Leaves>, N>,
+          trace_counted<AnyHitQuery<N, Leaves>, N>};
 }
 
 }  // namespace

@@ -19,6 +19,11 @@ GeneralKernels general_w4();
 GeneralKernels general_w8();
 GeneralKernels general_w16();
 
+/// All kernels of one width for trees whose leaves hold ids alone.
+TraversalKernels compact_w4();
+TraversalKernels compact_w8();
+TraversalKernels compact_w16();
+
 inline TraversalKernels joined(TraversalKernels kernels, MultiHitKernel multi_hit,
                                const GeneralKernels& general) {
   kernels.multi_hit = multi_hit;

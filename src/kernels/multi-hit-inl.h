@@ -32,8 +32,8 @@ inline kiwami_hit hit_of(const SceneView& scene, const LeafBlock<N>& leaf, int l
 }
 
 /// Puts all that the ray meets into a list, for as long as that has room.
-template <int N, typename List>
-struct MultiHitQuery : QueryBase<N> {
+template <int N, typename Leaves, typename List>
+struct MultiHitQuery : QueryBase<N, Leaves> {
   static constexpr bool kOrdered = true;
 
   List list;
@@ -51,11 +51,11 @@ struct MultiHitQuery : QueryBase<N> {
   }
 };
 
-template <int N, typename List>
+template <int N, typename Leaves, typename List>
 inline size_t trace_lists(const SceneView& scene, const RayBatch& batch, uint32_t max_hits,
                           HitRoom& room) {
   NoProbe probe;
-  MultiHitQuery<N, List> query;
+  MultiHitQuery<N, Leaves, List> query;
   for (size_t i = 0; i < batch.count; ++i) {
     const UnalignedRay& ray = ray_of(batch, i);
     room.counts[i] = 0;
@@ -71,12 +71,12 @@ inline size_t trace_lists(const SceneView& scene, const RayBatch& batch, uint32_
 }
 
 /// See MultiHitKernel.
-template <int N>
+template <int N, typename Leaves = StoredLeaves<N>>
 size_t multi_hit(const SceneView& scene, const RayBatch& batch, uint32_t max_hits, HitRoom& room) {
   if (max_hits != 0 && max_hits <= NearestHits::kCapacity) {
-    return trace_lists<N, NearestHits>(scene, batch, max_hits, room);
+    return trace_lists<N, Leaves, NearestHits>(scene, batch, max_hits, room);
   }
-  return trace_lists<N, CollectedHits>(scene, batch, max_hits, room);
+  return trace_lists<N, Leaves, CollectedHits>(scene, batch, max_hits, room);
 }
 
 }  // namespace

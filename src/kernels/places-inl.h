@@ -18,25 +18,26 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
 
-/// Looks for the first lane of a triangle in the leaves that a ray is in at one distance.
+/// Looks for the first lane of a triangle in the leaves that a ray is in at one distance. Looks at
+/// ids alone, so the layout of the leaves does not matter.
 template <int N>
 struct PlaceQuery {
   static constexpr bool kOrdered = false;
+  struct Room {};
 
   float best_bound;
   uint32_t id;
-  const LeafBlock<N>* first_leaf = nullptr;
-  int first_lane = 0;
+  const uint32_t* first_place = nullptr;
+
+  const uint32_t* leaf_at(const TreeView& tree, ChildReference leaf, Room&) const {
+    return leaf_ids_at<N>(tree, leaf);
+  }
 
   template <typename Probe>
-  bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe&) {
+  bool visit_leaf(const uint32_t* ids, uint32_t lanes, Probe&) {
     for (; lanes; lanes &= lanes - 1) {
-      const int lane = __builtin_ctz(lanes);
-      if (leaf.id[lane] != id) continue;
-      if (first_leaf && (first_leaf < &leaf || (first_leaf == &leaf && first_lane < lane)))
-        continue;
-      first_leaf = &leaf;
-      first_lane = lane;
+      const uint32_t* const place = ids + __builtin_ctz(lanes);
+      if (*place == id && (!first_place || place < first_place)) first_place = place;
     }
     return false;
   }
@@ -58,8 +59,8 @@ __attribute__((noinline)) PlaceQuery<N> find_place(const SceneView& scene, const
 template <int N>
 inline bool is_first_place(const SceneView& scene, const ReadyRay& ray, const LeafBlock<N>& leaf,
                            int lane, float t) {
-  const PlaceQuery<N> place = find_place<N>(scene, ray, leaf.id[lane], t);
-  return place.first_leaf == &leaf && place.first_lane == lane;
+  return find_place<N>(scene, ray, leaf.id[lane], t).first_place ==
+         leaf_ids_of<N>(scene.tree, leaf) + lane;
 }
 
 template <int N>
@@ -67,7 +68,7 @@ inline void CountingProbe<N>::on_accept(const SceneView& scene, const ReadyRay& 
                                         float t) {
   ++counters.accepted;
   bool is_in_box = scene.tree.has_duplicates != 0
-                       ? find_place<N>(scene, ray, id, t).first_leaf != nullptr
+                       ? find_place<N>(scene, ray, id, t).first_place != nullptr
                        : scaled_upper(ray, t) >= leaf_entry;
   for (uint32_t i = 0; i < depth; ++i) {
     is_in_box = is_in_box && scaled_upper(*levels[i].ray, t) >= levels[i].leaf_entry;

@@ -3,6 +3,7 @@
 // what to do with a leaf; the traversal loop is the same for all.
 #pragma once
 
+#include "kernels/leaf-inl.h"
 #include "kernels/triangle-inl.h"
 
 namespace kiwami {
@@ -30,9 +31,13 @@ inline bool is_visible(const SceneView& scene, const ReadyRay& ray, uint32_t id,
   return scene.has_masks == 0 || (range_of(scene, id).mask & ray.mask) != 0;
 }
 
-/// The state that all queries share: the ray, and how far along it anything is of interest.
-template <int N>
+/// The state that all queries share: the ray, and how far along it anything is of interest. Leaves
+/// says how leaves become blocks of triangles (see kernels/leaf-inl.h).
+template <int N, typename LeavesOfTree = StoredLeaves<N>>
 struct QueryBase {
+  using Leaves = LeavesOfTree;
+  using Room = typename Leaves::Room;
+
   const SceneView* scene;
   const ReadyRay* ray;
   float best_bound;  ///< scaled and widened; the closest hit draws it nearer
@@ -41,6 +46,11 @@ struct QueryBase {
     scene = &scene_view;
     ray = &ready;
     best_bound = ready.farthest;
+  }
+
+  /// The triangles of a leaf; what is gathered is put into the room.
+  const LeafBlock<N>& leaf_at(const TreeView& tree, ChildReference leaf, Room& room) const {
+    return Leaves::triangles_of(*scene, tree, leaf, room);
   }
 
   /// Calls accept(lane, crossings) for each visible triangle of the lanes that the ray meets
@@ -66,19 +76,19 @@ struct QueryBase {
 };
 
 /// The least (t, id).
-template <int N>
-struct ClosestHitQuery : QueryBase<N> {
+template <int N, typename Leaves = StoredLeaves<N>>
+struct ClosestHitQuery : QueryBase<N, Leaves> {
   static constexpr bool kOrdered = true;
   using Answer = kiwami_hit;
 
   float best_t;
   uint32_t best_id;
-  const LeafBlock<N>* best_leaf;
+  const LeafBlock<N>* best_leaf;  ///< nullptr: none; else only of use to Leaves::corners_of
   int best_lane;
   double best_v, best_w, best_sum;  ///< its edge functions
 
   void begin(const SceneView& scene_view, const ReadyRay& ready) {
-    QueryBase<N>::begin(scene_view, ready);
+    QueryBase<N, Leaves>::begin(scene_view, ready);
     best_t = ready.tmax;
     best_id = KIWAMI_INVALID_ID;
     best_leaf = nullptr;
@@ -119,7 +129,7 @@ struct ClosestHitQuery : QueryBase<N> {
     hit.t = best_t;
     hit.u = static_cast<float>(best_v / best_sum);
     hit.v = static_cast<float>(best_w / best_sum);
-    const auto corner = [&](int k, int axis) { return best_leaf->position[k][axis][best_lane]; };
+    const auto corner = Leaves::corners_of(*this->scene, best_leaf, best_lane, best_id);
     const auto edge = [&](int k, int axis) { return corner(k, axis) - corner(0, axis); };
     hit.normal_x = edge(1, 1) * edge(2, 2) - edge(1, 2) * edge(2, 1);
     hit.normal_y = edge(1, 2) * edge(2, 0) - edge(1, 0) * edge(2, 2);
@@ -133,15 +143,15 @@ struct ClosestHitQuery : QueryBase<N> {
 };
 
 /// Whether there is a hit: ends at the first.
-template <int N>
-struct AnyHitQuery : QueryBase<N> {
+template <int N, typename Leaves = StoredLeaves<N>>
+struct AnyHitQuery : QueryBase<N, Leaves> {
   static constexpr bool kOrdered = false;
   using Answer = uint8_t;
 
   bool is_hit;
 
   void begin(const SceneView& scene_view, const ReadyRay& ready) {
-    QueryBase<N>::begin(scene_view, ready);
+    QueryBase<N, Leaves>::begin(scene_view, ready);
     is_hit = false;
   }
 
@@ -163,15 +173,15 @@ bool is_first_place(const SceneView& scene, const ReadyRay& ray, const LeafBlock
                     float t);
 
 /// How many triangles the ray meets between tmin and tmax.
-template <int N>
-struct AllHitsQuery : QueryBase<N> {
+template <int N, typename Leaves = StoredLeaves<N>>
+struct AllHitsQuery : QueryBase<N, Leaves> {
   static constexpr bool kOrdered = false;
   using Answer = uint32_t;
 
   uint32_t count;
 
   void begin(const SceneView& scene_view, const ReadyRay& ready) {
-    QueryBase<N>::begin(scene_view, ready);
+    QueryBase<N, Leaves>::begin(scene_view, ready);
     count = 0;
   }
 

@@ -190,7 +190,8 @@ struct StreamTraversal {
         top = visit_node(subtree, active, top);
         continue;
       }
-      const LeafBlock<N>& leaf = leaf_at<N>(tree.memory, subtree);
+      typename Query::Room room;
+      const auto& leaf = queries[__builtin_ctz(active)].leaf_at(tree, subtree, room);
       for_each_ray(active,
                    [&](int i) { return queries[i].visit_leaf(leaf, subtree.mask(), probe); });
     }

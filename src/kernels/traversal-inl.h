@@ -126,7 +126,8 @@ __attribute__((always_inline)) inline bool advance(const TreeView& tree, const S
       is_done = query.visit_block(tree, current.subtree, probe);
       if (is_done) return true;
     } else {
-      const LeafBlock<N>& leaf = leaf_at<N>(tree.memory, current.subtree);
+      typename Query::Room room;
+      const auto& leaf = query.leaf_at(tree, current.subtree, room);
       if (query.visit_leaf(leaf, current.subtree.mask(), probe)) {
         is_done = true;
         return true;

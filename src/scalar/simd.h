@@ -4,7 +4,7 @@
 //   vfloat<N>      N floats: load, load_from_bytes (at any address), store, + - * /, min, max,
 //   multiply_add, square_root,
 //                  comparisons to bit masks, signs, selections, powers of two; rows to columns and
-//                  back
+//                  back, also from rows at any address
 //   vfloat<4>      also greatest_of_three, first_bits, first_lane: for axes in lanes
 //   Uniform3<N>    3 floats, each to be read as a vector of equal lanes, many times
 //   vdouble4       4 doubles, read from and written to floats
@@ -196,6 +196,15 @@ KIWAMI_INLINE void load_rows(const unsigned char* rows, size_t stride, vfloat<N>
     float row[4];
     __builtin_memcpy(row, rows + static_cast<size_t>(i) * stride, sizeof row);
     for (int k = 0; k < 4; ++k) columns[k].lane[i] = row[k];
+  }
+}
+/// Three columns from N rows of three floats, each at an address of its own: no other byte is read.
+template <int N>
+KIWAMI_INLINE void gather_rows(const unsigned char* const (&rows)[N], vfloat<N> (&columns)[3]) {
+  for (int i = 0; i < N; ++i) {
+    float row[3];
+    __builtin_memcpy(row, rows[i], sizeof row);
+    for (int k = 0; k < 3; ++k) columns[k].lane[i] = row[k];
   }
 }
 /// Writes row i of four columns to the floats that lie offset bytes into *targets[i].

@@ -3,6 +3,8 @@
 
 extern "C" void KIWAMI_KERNEL_TABLE_GETTER(kiwami::KernelTable* table) {
   using namespace kiwami;
-  *table = {KIWAMI_ISA_SSE, {KIWAMI_ISA::all_kernels_w4(), TraversalKernels{}, TraversalKernels{}}};
+  *table = {KIWAMI_ISA_SSE,
+            {KIWAMI_ISA::all_kernels_w4(), TraversalKernels{}, TraversalKernels{}},
+            {KIWAMI_ISA::compact_w4(), TraversalKernels{}, TraversalKernels{}}};
   KIWAMI_ISA::set_light_kernels(table->lights);
 }

@@ -21,6 +21,19 @@ struct Uniform3 {
   vfloat<N> operator[](int i) const { return lane[i]; }
 };
 
+inline simde__m128 load_three(const unsigned char* from) {
+  int32_t last;
+  __builtin_memcpy(&last, from + 2 * sizeof(float), sizeof last);
+  const simde__m128i two = simde_mm_loadl_epi64(reinterpret_cast<const simde__m128i*>(from));
+  return simde_mm_castsi128_ps(simde_mm_insert_epi32(two, last, 2));
+}
+inline void gather_rows(const unsigned char* const (&rows)[4], vfloat<4> (&columns)[3]) {
+  simde__m128 row[4], column[4];
+  for (int i = 0; i < 4; ++i) row[i] = load_three(rows[i]);
+  transpose(row, column);
+  for (int k = 0; k < 3; ++k) columns[k].value = column[k];
+}
+
 struct vdouble4 {
   simde__m128d low, high;
 };

@@ -128,6 +128,8 @@ struct ScenePart {
   float far_origin, far_origin_margin;
 };
 
+struct TriangleMeshView;
+
 /// What a kernel needs of a scene.
 struct SceneView {
   TreeView tree;                ///< of the static triangles
@@ -136,6 +138,8 @@ struct SceneView {
   uint32_t has_masks;  ///< 0: every geometry's mask is all ones
   uint32_t part_count;
   const ScenePart* parts;  ///< everything but the static triangles; none is empty
+  const TriangleMeshView* meshes = nullptr;  ///< of each range, for leaves of ids alone
+  uint64_t mesh_bytes = 0;                   ///< what rays may read of their buffers
 };
 
 }  // namespace kiwami

@@ -170,6 +170,21 @@ TEST(SceneFile, HoldsTreesOfSpatialSplits) {
   EXPECT_EQ(kiwami_scene_validate(loaded.get()), KIWAMI_OK) << last_error();
 }
 
+TEST(SceneFile, HoldsTheCompactLayout) {
+  const Device device = make_device();
+  const Scene scene = make_scene(device, make_mesh(device, random_triangles(2000, 5).desc()));
+  const Bytes fast = saved(scene);
+  ASSERT_EQ(kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_LAYOUT, KIWAMI_LAYOUT_COMPACT),
+            KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
+  const Bytes compact = saved(scene);
+  EXPECT_LT(compact.size() + 30 * 2000, fast.size());
+  Scene loaded;
+  ASSERT_EQ(load(device, compact, 0, loaded), KIWAMI_OK) << last_error();
+  expect_same_scene(scene, loaded);
+  EXPECT_EQ(kiwami_scene_validate(loaded.get()), KIWAMI_OK) << last_error();
+}
+
 TEST(SceneFile, CanBeChangedAndCommittedAgain) {
   const Device device = make_device();
   const Scene scene = make_mixed_scene(device, 500, 8);

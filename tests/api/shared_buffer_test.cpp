@@ -2,6 +2,8 @@
 // Buffers with odd strides and offsets at odd addresses, in memory that ends with the last element:
 // a sanitizer or a memory checker sees any byte read beyond.
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <cstring>
@@ -32,10 +34,45 @@ struct ExactBuffer {
   std::unique_ptr<void, Free> memory;
 };
 
+/// Elements of 12 bytes that begin or end where readable memory does: a byte read beyond ends the
+/// program.
+class GuardedBuffer {
+ public:
+  GuardedBuffer(const void* elements, size_t count, bool at_end) {
+    const auto page = static_cast<size_t>(sysconf(_SC_PAGESIZE));
+    const size_t room = (12 * count + page - 1) / page * page;
+    size_ = room + 2 * page;
+    memory_ = mmap(nullptr, size_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    auto* const begin = static_cast<char*>(memory_) + page;
+    EXPECT_EQ(mprotect(begin, room, PROT_READ | PROT_WRITE), 0);
+    first_ = at_end ? begin + room - 12 * count : begin;
+    std::memcpy(first_, elements, 12 * count);
+  }
+  ~GuardedBuffer() { munmap(memory_, size_); }
+  GuardedBuffer(const GuardedBuffer&) = delete;
+  GuardedBuffer& operator=(const GuardedBuffer&) = delete;
+
+  const void* first() const { return first_; }
+
+ private:
+  void* memory_;
+  size_t size_;
+  char* first_;
+};
+
 struct Layout {
   size_t vertex_offset, vertex_stride, index_offset, index_stride;
   uint32_t flags;
 };
+
+void commit_compact(const Scene& scene, double width) {
+  const auto set = [&](uint32_t parameter, double value) {
+    ASSERT_EQ(kiwami_scene_set_parameter(scene.get(), parameter, value), KIWAMI_OK);
+  };
+  set(KIWAMI_PARAMETER_BVH_WIDTH, width);
+  set(KIWAMI_PARAMETER_LAYOUT, KIWAMI_LAYOUT_COMPACT);
+  ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
+}
 
 class BufferTest : public testing::TestWithParam<Layout> {};
 
@@ -65,6 +102,34 @@ TEST_P(BufferTest, GivesTheBitsOfTightlyPackedCopies) {
   desc.indices = nullptr;  // the indices are 0, 1, 2, ... in any case
   const Scene unindexed = make_scene(device, make_mesh(device, desc));
   EXPECT_TRUE(are_equal(closest_hits(unindexed, rays), closest_hits(packed, rays)));
+
+  for (const Scene* compact : {&scene, &unindexed}) {
+    for (const double width : {4.0, 8.0, 16.0}) {
+      commit_compact(*compact, width);
+      EXPECT_TRUE(are_equal(closest_hits(*compact, rays), closest_hits(packed, rays)));
+    }
+  }
+}
+
+TEST(SharedBuffer, IsNotReadBeyondItsFirstAndLastElement) {
+  const Device device = make_device();
+  const Triangles triangles = random_triangles(300, kiwami_tests::seed());
+  const std::vector<kiwami_ray> rays = random_rays(2000, kiwami_tests::seed());
+  const Scene packed = make_scene(device, make_mesh(device, triangles.desc()));
+  for (const bool at_end : {false, true}) {
+    const GuardedBuffer vertices(triangles.vertices.data(), triangles.vertices.size() / 3, at_end);
+    const GuardedBuffer indices(triangles.indices.data(), triangles.indices.size() / 3, at_end);
+    kiwami_triangle_mesh_desc desc = triangles.desc();
+    desc.flags = KIWAMI_MESH_SHARE_BUFFERS;
+    desc.vertices = vertices.first();
+    desc.indices = indices.first();
+    const Scene scene = make_scene(device, make_mesh(device, desc));
+    EXPECT_TRUE(are_equal(closest_hits(scene, rays), closest_hits(packed, rays)));
+    for (const double width : {4.0, 8.0, 16.0}) {
+      commit_compact(scene, width);
+      EXPECT_TRUE(are_equal(closest_hits(scene, rays), closest_hits(packed, rays)));
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Layouts, BufferTest,

@@ -117,13 +117,17 @@ TEST_P(Emulated, AnswersEqualTheScalarOnesToTheBit) {
   for (size_t i = 0; i < scenes.size() && !HasFatalFailure(); ++i) {
     SCOPED_TRACE(scenes[i].name + ", KIWAMI_SEED=" + std::to_string(seed()));
     const SceneHandle scene =
-        make_scene(device.get(), scenes[i], {.width = width, .merges_leaves = i % 2 == 0});
+        make_scene(device.get(), scenes[i],
+                   {.width = width,
+                    .merges_leaves = i % 2 == 0,
+                    .parameters = {{KIWAMI_PARAMETER_LAYOUT, i % 3 == 0 ? 1.0 : 0.0}}});
     RayGenerator generator(scenes[i], Random(seed(), i));
     std::vector<kiwami_ray> rays(count);
     for (kiwami_ray& ray : rays) ray = generator.next();
     const SceneView& view = view_of(scene.get());
-    const Answers reference = trace(scalar.of_width(width), view, rays);
-    expect_equal(trace(emulated.of_width(width), view, rays), reference, rays);
+    const kiwami::LeafLayout layout = view.tree.leaf_layout;
+    const Answers reference = trace(scalar.of(width, layout), view, rays);
+    expect_equal(trace(emulated.of(width, layout), view, rays), reference, rays);
     traced += count;
     for (const uint8_t hit : reference.any) hits += hit;
   }

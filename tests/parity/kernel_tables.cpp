@@ -22,7 +22,7 @@ std::vector<Answer> run(Kernel kernel, const kiwami::SceneView& scene,
 
 }  // namespace
 
-std::vector<NamedKernels> all_kernels() {
+std::vector<NamedKernels> all_kernels(kiwami::LeafLayout layout) {
   const uint32_t usable = kiwami::built_isas() & kiwami::runnable_isas();
   std::vector<NamedKernels> found;
   for (uint32_t isa = KIWAMI_ISA_SCALAR; isa <= KIWAMI_ISA_AVX512; ++isa) {
@@ -32,7 +32,7 @@ std::vector<NamedKernels> all_kernels() {
       std::string name = kiwami::isa_name(isa);
       name += '_';
       name += std::to_string(width);
-      found.push_back({name, isa, width, kiwami::kernels_of(isa, width)});
+      found.push_back({name, isa, width, kiwami::kernels_of(isa, width, layout)});
     }
   }
   return found;

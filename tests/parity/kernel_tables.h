@@ -21,8 +21,8 @@ struct NamedKernels {
 /// How GoogleTest prints one.
 inline void PrintTo(const NamedKernels& kernels, std::ostream* stream) { *stream << kernels.name; }
 
-/// Scalar first.
-std::vector<NamedKernels> all_kernels();
+/// For trees of one layout; scalar first.
+std::vector<NamedKernels> all_kernels(kiwami::LeafLayout layout = kiwami::LeafLayout::kTriangles);
 
 std::vector<kiwami_hit> run_closest_hit(kiwami::TraversalKernel kernel,
                                         const kiwami::SceneView& scene,

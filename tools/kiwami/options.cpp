@@ -78,6 +78,7 @@ BuildOptions PipelineOptions::build_options(uint32_t bvh_width) const {
       build_options_of(static_cast<uint32_t>(number - std::begin(kQualityNames)));
   options.bvh_width = bvh_width;
   options.merge_leaves = merge_leaves;
+  options.layout = layout == "compact" ? KIWAMI_LAYOUT_COMPACT : KIWAMI_LAYOUT_FAST;
   if (!builder.empty()) options.builder = method_of_name(KIWAMI_STAGE_BUILDER, builder);
   if (!contraction.empty()) {
     options.contraction = method_of_name(KIWAMI_STAGE_CONTRACTION, contraction);
@@ -116,6 +117,16 @@ void add_pipeline_options(CLI::App& command, PipelineOptions& options) {
                      "How it becomes wide: " + list(KIWAMI_STAGE_CONTRACTION));
   command.add_flag("--merge-leaves,!--no-merge-leaves", options.merge_leaves,
                    "Bottom nodes and leaf blocks are shared by masks (the default)");
+  const auto check_layout = [](std::string& text) -> std::string {
+    if (text == "fast" || text == "compact") return {};
+    return "it is '" + text + "', expected fast or compact";
+  };
+  command
+      .add_option("--layout", options.layout,
+                  "What leaves hold: fast: triangles; compact: their numbers alone, rays read the "
+                  "meshes")
+      ->check(CLI::Validator(check_layout, ""))
+      ->capture_default_str();
 }
 
 BuildOptions parse_pipeline(const std::string& option, const std::string& text,
@@ -133,6 +144,8 @@ BuildOptions parse_pipeline(const std::string& option, const std::string& text,
   for (size_t i = 1; i < parts.size(); ++i) {
     if (parts[i] == "merged" || parts[i] == "unmerged") {
       pipeline.merge_leaves = parts[i] == "merged";
+    } else if (parts[i] == "fast" || parts[i] == "compact") {
+      pipeline.layout = parts[i];
     } else {
       pipeline.contraction = parts[i];
     }

@@ -25,15 +25,16 @@ struct PipelineOptions {
   std::string optimizers;   ///< between commas; empty: those of the quality; none: none
   std::string contraction;  ///< empty: that of the quality
   bool merge_leaves = true;
+  std::string layout = "fast";
 
   BuildOptions build_options(uint32_t bvh_width) const;
 };
 
-/// Adds --quality, --builder, --optimize, --contract and --merge-leaves.
+/// Adds --quality, --builder, --optimize, --contract, --merge-leaves and --layout.
 void add_pipeline_options(CLI::App& command, PipelineOptions& options);
 
-/// The build of "BUILDER[+OPTIMIZER]...[,CONTRACTION][,merged|unmerged]", spaces apart, as
-/// pipeline_name writes it; `option` is named by the error.
+/// The build of "BUILDER[+OPTIMIZER]...[,CONTRACTION][,merged|unmerged][,fast|compact]", spaces
+/// apart, as pipeline_name writes it; `option` is named by the error.
 BuildOptions parse_pipeline(const std::string& option, const std::string& text, uint32_t bvh_width);
 
 /// Which kernels trace, and how.

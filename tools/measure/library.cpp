@@ -42,6 +42,7 @@ constexpr struct {
                    {"curve_code", KIWAMI_PARAMETER_CURVE_CODE},
                    {"lbvh_delta", KIWAMI_PARAMETER_LBVH_DELTA},
                    {"lbvh_chunk_size", KIWAMI_PARAMETER_LBVH_CHUNK_SIZE},
+                   {"layout", KIWAMI_PARAMETER_LAYOUT},
                    {"quality", KIWAMI_PARAMETER_QUALITY}};
 
 std::string parameter_names() {
@@ -169,6 +170,7 @@ void BuiltScene::set_parameters(kiwami_device* device, const BuildOptions& optio
         device);
   check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_CONTRACTION, options.contraction),
         device);
+  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_LAYOUT, options.layout), device);
   for (const Parameter& parameter : options.parameters) {
     check(kiwami_scene_set_parameter(scene_, parameter.number, parameter.value), device);
     if (parameter.number == KIWAMI_PARAMETER_NODE_COST) node_cost_ = parameter.value;
@@ -303,7 +305,8 @@ std::string pipeline_name(const BuildOptions& options) {
     name += std::string(" + ") + kiwami_method_name(KIWAMI_STAGE_OPTIMIZER, method);
   }
   name += std::string(", ") + kiwami_method_name(KIWAMI_STAGE_CONTRACTION, options.contraction);
-  return name + (options.merge_leaves ? ", merged" : ", unmerged");
+  name += options.merge_leaves ? ", merged" : ", unmerged";
+  return name + (options.layout == KIWAMI_LAYOUT_COMPACT ? ", compact" : "");
 }
 
 Parameter parse_parameter(const std::string& text) {

@@ -54,6 +54,7 @@ struct BuildOptions {
   uint32_t builder = KIWAMI_BUILDER_BINNED_SAH;
   std::vector<uint32_t> optimizers = {};  ///< run in this order
   uint32_t contraction = KIWAMI_CONTRACTION_OPTIMAL;
+  uint32_t layout = KIWAMI_LAYOUT_FAST;
   std::vector<Parameter> parameters = {};  ///< set after the others, in this order
 };
 
@@ -70,7 +71,7 @@ std::vector<std::string> method_names(uint32_t stage);
 /// The number of a method of a KIWAMI_STAGE_*; throws LibraryError that lists the names.
 uint32_t method_of_name(uint32_t stage, const std::string& name);
 
-/// "binned_sah + rotation, optimal, merged".
+/// "binned_sah + rotation, optimal, merged", and ", compact" where that is the layout.
 std::string pipeline_name(const BuildOptions& options);
 
 /// A tree, its nodes breadth first, and its cost.

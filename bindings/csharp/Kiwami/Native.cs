@@ -549,7 +549,10 @@ internal static class Native {
   public const uint KIWAMI_PARAMETER_CURVE_CODE = 18;
   public const uint KIWAMI_PARAMETER_LBVH_DELTA = 19;
   public const uint KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20;
+  public const uint KIWAMI_PARAMETER_LAYOUT = 21;
   public const uint KIWAMI_PARAMETER_QUALITY = 30;
+  public const uint KIWAMI_LAYOUT_FAST = 0;
+  public const uint KIWAMI_LAYOUT_COMPACT = 1;
   public const uint KIWAMI_STAGE_BUILDER = 1;
   public const uint KIWAMI_STAGE_OPTIMIZER = 2;
   public const uint KIWAMI_STAGE_CONTRACTION = 3;

@@ -54,7 +54,10 @@ final class Native {
   static final int KIWAMI_PARAMETER_CURVE_CODE = 18;
   static final int KIWAMI_PARAMETER_LBVH_DELTA = 19;
   static final int KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20;
+  static final int KIWAMI_PARAMETER_LAYOUT = 21;
   static final int KIWAMI_PARAMETER_QUALITY = 30;
+  static final int KIWAMI_LAYOUT_FAST = 0;
+  static final int KIWAMI_LAYOUT_COMPACT = 1;
   static final int KIWAMI_STAGE_BUILDER = 1;
   static final int KIWAMI_STAGE_OPTIMIZER = 2;
   static final int KIWAMI_STAGE_CONTRACTION = 3;
