@@ -84,6 +84,7 @@ typedef struct kiwami_bvh_desc {
   /* How to build: builder, contraction, leaf size, bins and costs, with the bounds and defaults of
    * kiwami_parameter_bounds; what is not named has its default. Not BVH_WIDTH, for which there is
    * width. A MAX_LEAF_SIZE of 0 is 4 in binary trees; parameters of merging mean nothing here.
+   * QUALITY sets the builder and the contraction alone: the optimisers are those named below.
    * Copied; NULL only if parameter_count is 0. */
   const kiwami_parameter_value* parameters;
   uint64_t parameter_count;

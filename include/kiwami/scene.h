@@ -41,8 +41,9 @@ enum {
   KIWAMI_PARAMETER_REASSIGN = 14,    /* binned SAH: 1: what a split's plane cuts goes to the cheaper
                                       * side; 0: to that of its centroid */
   KIWAMI_PARAMETER_AAC_QUALITY = 17, /* KIWAMI_BUILDER_AAC: 1: high, in larger cells; 0: fast */
-  KIWAMI_PARAMETER_CURVE_CODE = 18,  /* LBVH, PLOC and AAC: 0: plain Morton codes; 1: extended
-                                      * ones, by the shape of the scene and the size of boxes */
+  KIWAMI_PARAMETER_CURVE_CODE = 18,  /* LBVH, PLOC, AAC, WIDE_BOTTOM_UP: 0: plain Morton codes; 1:
+                                      * extended ones, by the shape of the scene and the size of
+                                      * boxes */
   KIWAMI_PARAMETER_LBVH_DELTA = 19,  /* neighbours are parted 0: by codes; 1: by surface area */
   KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20, /* neighbours that a leaf begins with at most, 1 to 16 */
   KIWAMI_PARAMETER_LAYOUT = 21,          /* what leaves hold of triangles: KIWAMI_LAYOUT_* */
@@ -76,17 +77,20 @@ enum {
 
 /* Methods by stage. The numbers are pinned; kiwami_method_name gives the name of each. */
 enum {
-  KIWAMI_BUILDER_BINNED_SAH = 0,    /* top-down by the surface area heuristic over bins */
-  KIWAMI_BUILDER_LBVH = 1,          /* along a Morton curve, by the cells that codes share */
-  KIWAMI_BUILDER_PLOC = 2,          /* along a Morton curve, nearest neighbours join */
-  KIWAMI_BUILDER_SWEEP_SAH = 3,     /* top-down by the surface area heuristic over all positions */
-  KIWAMI_BUILDER_SPATIAL_SPLIT = 4, /* binned, and triangles are cut where boxes would overlap */
-  KIWAMI_BUILDER_AGGLOMERATIVE = 5, /* of all pairs of clusters the nearest one joins first */
-  KIWAMI_BUILDER_AAC = 6,           /* the same within the cells of a Morton curve */
-  KIWAMI_BUILDER_MINI_TREE = 7,     /* small trees by sweeping, and one over all of them */
-  KIWAMI_BUILDER_OIBVH = 8,         /* the complete tree along a Morton curve */
+  KIWAMI_BUILDER_BINNED_SAH = 0,     /* top-down by the surface area heuristic over bins */
+  KIWAMI_BUILDER_LBVH = 1,           /* along a Morton curve, by the cells that codes share */
+  KIWAMI_BUILDER_PLOC = 2,           /* along a Morton curve, nearest neighbours join */
+  KIWAMI_BUILDER_SWEEP_SAH = 3,      /* top-down by the surface area heuristic over all positions */
+  KIWAMI_BUILDER_SPATIAL_SPLIT = 4,  /* binned, and triangles are cut where boxes would overlap */
+  KIWAMI_BUILDER_AGGLOMERATIVE = 5,  /* of all pairs of clusters the nearest one joins first */
+  KIWAMI_BUILDER_AAC = 6,            /* the same within the cells of a Morton curve */
+  KIWAMI_BUILDER_MINI_TREE = 7,      /* small trees by sweeping, and one over all of them */
+  KIWAMI_BUILDER_OIBVH = 8,          /* the complete tree along a Morton curve */
+  KIWAMI_BUILDER_WIDE_BOTTOM_UP = 9, /* as PLOC within blocks, straight to the wide tree: there is
+                                      * no binary tree to optimise, and contractions have no say */
   KIWAMI_BUILDER_STR = 10,          /* the tiles of a sort along each axis, as R-trees are packed */
-  KIWAMI_BUILDER_TRBVH = 11         /* LBVH, its treelets restructured */
+  KIWAMI_BUILDER_TRBVH = 11,        /* LBVH, its treelets restructured */
+  KIWAMI_BUILDER_WIDE_TOP_DOWN = 12 /* binned, straight to the wide tree: the same holds */
 };
 enum {
   KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1,  /* subtrees move to where the area shrinks most */

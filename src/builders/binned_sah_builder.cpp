@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "builders/joined_nodes.h"
 #include "builders/reassignment.h"
 #include "builders/sah_split.h"
 
@@ -163,7 +162,7 @@ struct Subtree {
 /// partitions are stable, each node meets its own by rising address.
 class Build {
  public:
-  Build(Array<BuildPrimitive> primitives, const Config& config, Memory& memory,
+  Build(Array<BuildPrimitive> primitives, const Config& config, TreeParts& parts, Memory& memory,
         const Parallel& parallel)
       : primitives_(std::move(primitives)),
         config_(config),
@@ -174,19 +173,17 @@ class Build {
         block_size_(std::max(4096u, count_ / 1024)),
         subtree_size_(config.subtree_size_of(count_)),
         order_{Array<uint32_t>(memory, count_), Array<uint32_t>(memory, count_)},
-        nodes_(memory, parallel),
+        parts_(parts),
         subtrees_(memory) {}
 
-  BinaryBvh run() {
-    const OpenNode root = {bounds_of_all(), 0, count_, 1, nodes_.add_top()};
+  /// Returns the ids of the primitives.
+  Array<uint32_t> run() {
+    const OpenNode root = {bounds_of_all(), 0, count_, 1, parts_.add_top()};
     GrowingArray<LevelNode> level(memory_);
     add_open_node(root, 0, level);
     for (int side = 0; !level.empty(); side = 1 - side) level = split_level(level, side);
     build_subtrees();
-    primitives_ = Array<BuildPrimitive>();
-    order_[1] = Array<uint32_t>();
-    return {nodes_.join([this](size_t i) { return subtree_list_[i].open.begin; }),
-            std::move(order_[0])};
+    return std::move(order_[0]);
   }
 
  private:
@@ -386,9 +383,9 @@ class Build {
   void add_children(const LevelNode& parent, const Array<Block>& blocks, int side,
                     GrowingArray<LevelNode>& next) {
     const OpenNode& open = parent.open;
-    const uint32_t first = nodes_.add_top();
-    nodes_.add_top();
-    nodes_.top(open.node) = {open.bounds.geometry.bounds(), first, 0};
+    const uint32_t first = parts_.add_top();
+    parts_.add_top();
+    parts_.top(open.node) = {open.bounds.geometry.bounds(), first, 0};
     const uint32_t edges[3] = {open.begin, open.begin + parent.decision.left_count, open.end};
     for (uint32_t child = 0; child < 2; ++child) {
       RangeBounds bounds = RangeBounds::empty();
@@ -410,14 +407,15 @@ class Build {
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
       return subtree_list_[a].open.count() > subtree_list_[b].open.count();
     });
-    nodes_.set_subtree_count(order.size());
+    parts_.set_subtree_count(order.size());
     parallel_.for_each(order.size(), [&](size_t i) {
       const Subtree& subtree = subtree_list_[order[i]];
       const OpenNode& open = subtree.open;
       SubtreeBuilder builder(config_, open, memory_);
       builder.build(primitives_.data(), order_[subtree.side].data() + open.begin,
-                    order_[0].data() + open.begin, nodes_.top(open.node));
-      nodes_.keep(order[i], open.node, builder.nodes(), builder.node_count());
+                    order_[0].data() + open.begin, parts_.top(open.node));
+      parts_.keep(order[i], {open.node, builder.nodes(), builder.node_count(), open.begin,
+                             open.count(), order_[0].data() + open.begin});
     });
   }
 
@@ -429,7 +427,7 @@ class Build {
   uint32_t block_size_;
   uint32_t subtree_size_;
   Array<uint32_t> order_[2];  ///< of the primitives; in the end the first one holds their ids
-  JoinedNodes nodes_;
+  TreeParts& parts_;
   GrowingArray<Subtree> subtrees_;
   Array<Subtree> subtree_list_;
 };
@@ -448,7 +446,15 @@ uint32_t BinnedSahBuilder::bins_of(uint32_t primitive_count, uint32_t depth, con
 BinaryBvh BinnedSahBuilder::build(Array<BuildPrimitive> primitives, const Config& config,
                                   Memory& memory, const Parallel& parallel) {
   if (primitives.empty()) return {Array<BinaryNode>(memory, 0), Array<uint32_t>(memory, 0)};
-  return Build(std::move(primitives), config, memory, parallel).run();
+  JoinedNodes nodes(memory, parallel);
+  Array<uint32_t> ids = build_parts(std::move(primitives), config, nodes, memory, parallel);
+  return {nodes.join(), std::move(ids)};
+}
+
+Array<uint32_t> BinnedSahBuilder::build_parts(Array<BuildPrimitive> primitives,
+                                              const Config& config, TreeParts& parts,
+                                              Memory& memory, const Parallel& parallel) {
+  return Build(std::move(primitives), config, parts, memory, parallel).run();
 }
 
 }  // namespace kiwami

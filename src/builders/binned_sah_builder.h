@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builders/joined_nodes.h"
 #include "builders/sah_config.h"
 #include "bvh/binary_bvh.h"
 #include "core/memory.h"
@@ -31,6 +32,11 @@ class BinnedSahBuilder {
   /// nodes are the most that a build holds.
   static BinaryBvh build(Array<BuildPrimitive> primitives, const Config& config, Memory& memory,
                          const Parallel& parallel);
+
+  /// Builds the tree in parts, for whoever keeps no binary one; returns the ids of the primitives,
+  /// in the order of the tree. There is at least one primitive.
+  static Array<uint32_t> build_parts(Array<BuildPrimitive> primitives, const Config& config,
+                                     TreeParts& parts, Memory& memory, const Parallel& parallel);
 };
 
 }  // namespace kiwami

@@ -13,11 +13,26 @@ struct MortonOrder {
   Array<BuildPrimitive> primitives;  ///< in their order; equal codes by the order given
 };
 
+/// A primitive's code and its number in the order given.
+struct CodedIndex {
+  uint64_t code;
+  uint32_t index;
+};
+
+/// The same order for builders that leave the primitives where they are.
+struct MortonCodes {
+  Array<CodedIndex> sorted;
+  Bounds bounds;  ///< of all primitives
+};
+
 /// Which codes.
 enum class CurveCode {
   kPlain,    ///< the bits of the three axes in turn
   kExtended  ///< the longest axis first, with bits of the size (ExtendedMortonGrid)
 };
+
+MortonCodes sort_morton_codes(const Array<BuildPrimitive>& primitives, Memory& memory,
+                              const Parallel& parallel, CurveCode code = CurveCode::kPlain);
 
 MortonOrder sort_by_morton_code(Array<BuildPrimitive> primitives, Memory& memory,
                                 const Parallel& parallel, CurveCode code = CurveCode::kPlain);

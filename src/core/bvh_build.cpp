@@ -111,6 +111,17 @@ void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
   }
   // Nothing is merged, so nothing is divided to be merged.
   parameters.set(KIWAMI_PARAMETER_MERGE_LEAVES, 0);
+  if (builds_wide_tree(parameters)) {
+    if (plan.width == 2) {
+      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                  "width is 2, expected 4, 8 or 16, as builder %s makes no binary tree",
+                  method_name(KIWAMI_STAGE_BUILDER, parameters.whole(KIWAMI_PARAMETER_BUILDER)));
+    }
+    tree_ = flatten(build_wide_draft(std::move(primitives), wide_tree_config(parameters, width),
+                                     parameters, memory, parallel),
+                    memory);
+    return;
+  }
   const BinaryBvh binary =
       build_binary_bvh(std::move(primitives), source(), parameters, width, memory, parallel);
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {

@@ -122,10 +122,8 @@ void CommittedScene::number_triangles(const AttachedGeometry* geometries, size_t
   numbered_count_ = static_cast<size_t>(next_id);
 }
 
-BinaryBvh CommittedScene::build_binary(const SceneParameters& parameters) {
-  Array<BuildPrimitive> primitives =
-      collect_build_primitives(source(), numbered_count_, memory_, parallel());
-  triangle_count_ = primitives.size();
+BinaryBvh CommittedScene::build_binary(Array<BuildPrimitive> primitives,
+                                       const SceneParameters& parameters) {
   BinaryBvh binary = build_binary_bvh(std::move(primitives), source(), parameters, tree_.width,
                                       memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
@@ -144,11 +142,23 @@ void CommittedScene::build(const SceneParameters& parameters,
     sampled = sample_rays_for(parameters, source(), memory_);
     rays = {sampled.data(), sampled.size()};
   }
-  BinaryBvh binary = build_binary(parameters);
-  const Bounds bounds = binary.nodes.empty() ? Bounds::empty() : binary.nodes[0].bounds;
   WideTreeConfig config = wide_tree_config(parameters, tree_.width);
   config.rays = rays;
-  tree_ = build_wide_tree(std::move(binary), source(), config, memory_, parallel());
+  Array<BuildPrimitive> primitives =
+      collect_build_primitives(source(), numbered_count_, memory_, parallel());
+  triangle_count_ = primitives.size();
+  Bounds bounds;
+  {
+    WideDraft draft;
+    if (builds_wide_tree(parameters)) {
+      draft = build_wide_draft(std::move(primitives), config, parameters, memory_, parallel());
+    } else {
+      draft = contract_to_draft(build_binary(std::move(primitives), parameters), source(), config,
+                                memory_, parallel());
+    }
+    bounds = draft.boxes.empty() ? Bounds::empty() : draft.boxes[0];
+    tree_ = pack_wide_tree(draft, source(), config, memory_, parallel());
+  }
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
   optimize_wide_tree(tree_, source(), rays, parameters, memory_, parallel());
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();

@@ -73,7 +73,7 @@ class CommittedScene : public Object<CommittedScene> {
   };
 
   void number_triangles(const AttachedGeometry* geometries, size_t count);
-  BinaryBvh build_binary(const SceneParameters& parameters);
+  BinaryBvh build_binary(Array<BuildPrimitive> primitives, const SceneParameters& parameters);
   void build(const SceneParameters& parameters, std::span<const RepresentativeRay> rays);
   void show_tree(const Bounds& bounds);
   void describe();

@@ -23,6 +23,8 @@
 #include "optimizers/sato_reorder.h"
 #include "optimizers/sequential_reinsertion.h"
 #include "optimizers/treelet_restructuring.h"
+#include "wide/wide_bottom_up.h"
+#include "wide/wide_top_down.h"
 
 namespace kiwami {
 namespace {
@@ -42,8 +44,10 @@ constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_AAC, "aac"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_MINI_TREE, "mini_tree"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_OIBVH, "oibvh"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_WIDE_BOTTOM_UP, "wide_bottom_up"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_STR, "str"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_TRBVH, "trbvh"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_WIDE_TOP_DOWN, "wide_top_down"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_OPTIMAL, "optimal"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_RAY_DISTRIBUTION, "ray_distribution"},
@@ -89,6 +93,18 @@ TreeletConfig treelet_config(uint32_t leaf_count, const SahCosts& costs) {
   config.costs.node_cost *= kBinaryNodeCost;
   config.max_leaf_size = costs.block_size;
   return config;
+}
+
+uint32_t leaf_size_of(const SceneParameters& parameters, uint32_t width) {
+  const uint32_t leaf_size = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
+  return leaf_size != 0 ? std::min(leaf_size, width) : width;
+}
+
+/// Of the leaves where splitting ends if small subtrees are collapsed to leaves later, by what they
+/// cost. Half the size, or four triangles, leaves that nearly all of the choice (within 2.3 % of
+/// the cost from single triangles on real scenes) and makes a tree that is a third as large.
+uint32_t collapsible_leaf_size(uint32_t leaf_size) {
+  return std::min(leaf_size, std::max(4u, leaf_size / 2));
 }
 
 /// Whether a builder makes leaves of several primitives where that is cheaper.
@@ -237,9 +253,26 @@ ContractionMethod contraction_of(const SceneParameters& parameters) {
   return static_cast<ContractionMethod>(parameters.whole(KIWAMI_PARAMETER_CONTRACTION));
 }
 
-uint32_t leaf_size_of(const SceneParameters& parameters, uint32_t width) {
-  const uint32_t leaf_size = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
-  return leaf_size != 0 ? std::min(leaf_size, width) : width;
+WideBottomUpConfig bottom_up_config(const WideTreeConfig& config,
+                                    const SceneParameters& parameters) {
+  WideBottomUpConfig bottom_up;
+  bottom_up.width = config.width;
+  bottom_up.leaf_width = config.max_leaf_size;
+  bottom_up.node_cost = config.node_cost;
+  bottom_up.leaf_cost = config.leaf_cost;
+  bottom_up.fill_nodes = config.merge_leaves;
+  bottom_up.curve_code = curve_code(parameters);
+  return bottom_up;
+}
+
+WideTopDownConfig top_down_config(const WideTreeConfig& config, const SceneParameters& parameters) {
+  WideTopDownConfig top_down;
+  top_down.width = config.width;
+  top_down.leaf_width = config.max_leaf_size;
+  top_down.fill_nodes = config.merge_leaves;
+  top_down.splits = binned_sah_config(parameters, config.width);
+  top_down.splits.max_leaf_size = collapsible_leaf_size(config.max_leaf_size);
+  return top_down;
 }
 
 }  // namespace
@@ -267,15 +300,11 @@ uint32_t highest_method(uint32_t stage) {
 }
 
 uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width) {
-  const uint32_t asked = parameters.whole(KIWAMI_PARAMETER_MAX_LEAF_SIZE);
-  const uint32_t leaf_size = asked != 0 ? std::min(asked, width) : width;
-  if (parameters.whole(KIWAMI_PARAMETER_CONTRACTION) == KIWAMI_CONTRACTION_SURFACE_AREA) {
-    return leaf_size;
-  }
-  // The other contractions collapse small subtrees to leaves themselves. Leaves of half the size,
-  // or of four triangles, leave it nearly all of the choice (within 2.3 % of the cost from single
-  // triangles on real scenes) and a tree that is a third as large.
-  return std::min(leaf_size, std::max(4u, leaf_size / 2));
+  const uint32_t leaf_size = leaf_size_of(parameters, width);
+  // The other contractions collapse small subtrees to leaves themselves.
+  const bool is_collapsed =
+      parameters.whole(KIWAMI_PARAMETER_CONTRACTION) != KIWAMI_CONTRACTION_SURFACE_AREA;
+  return is_collapsed ? collapsible_leaf_size(leaf_size) : leaf_size;
 }
 
 WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t width) {
@@ -326,6 +355,31 @@ void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
     const Optimizer& optimizer = *find_optimizer(method);
     if (optimizer.on_wide) optimizer.on_wide(tree, {source, rays, costs, memory, parallel});
   }
+}
+
+bool builds_wide_tree(const SceneParameters& parameters) {
+  const uint32_t builder = parameters.whole(KIWAMI_PARAMETER_BUILDER);
+  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN;
+}
+
+WideDraft build_wide_draft(Array<BuildPrimitive> primitives, const WideTreeConfig& config,
+                           const SceneParameters& parameters, Memory& memory,
+                           const Parallel& parallel) {
+  const uint32_t builder = parameters.whole(KIWAMI_PARAMETER_BUILDER);
+  for (const uint32_t method : parameters.optimizers()) {
+    if (!find_optimizer(method)->on_binary) continue;
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "builder %s makes no binary tree that %s could change, expected no optimizers but "
+                "those of wide trees",
+                method_name(KIWAMI_STAGE_BUILDER, builder),
+                method_name(KIWAMI_STAGE_OPTIMIZER, method));
+  }
+  if (builder == KIWAMI_BUILDER_WIDE_TOP_DOWN) {
+    return build_wide_top_down(std::move(primitives), top_down_config(config, parameters), memory,
+                               parallel);
+  }
+  return build_wide_bottom_up(std::move(primitives), bottom_up_config(config, parameters), memory,
+                              parallel);
 }
 
 }  // namespace kiwami

@@ -40,4 +40,13 @@ void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
                         std::span<const RepresentativeRay> rays, const SceneParameters& parameters,
                         Memory& memory, const Parallel& parallel);
 
+/// Whether the builder makes the wide tree itself, without a binary one.
+bool builds_wide_tree(const SceneParameters& parameters);
+
+/// Runs such a builder. Throws Error(INVALID_ARGUMENT) where optimisers of binary trees
+/// are set.
+WideDraft build_wide_draft(Array<BuildPrimitive> primitives, const WideTreeConfig& config,
+                           const SceneParameters& parameters, Memory& memory,
+                           const Parallel& parallel);
+
 }  // namespace kiwami

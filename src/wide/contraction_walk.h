@@ -5,19 +5,13 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "wide/chosen_slots.h"
 #include "wide/contraction.h"
 
 namespace kiwami {
 
-constexpr uint32_t kMaxContractionWidth = 16;
 /// Sizes of leaves are kept in bytes.
 constexpr uint32_t kMaxLeafSize = 255;
-
-/// A binary node that becomes a child: a node or a leaf.
-struct ChosenSlot {
-  uint32_t binary_node;
-  bool is_leaf;
-};
 
 /// The contraction of one subtree (or of the nodes near the root). Chooser has
 ///   uint32_t choose(uint32_t binary_node, ChosenSlot* chosen) const

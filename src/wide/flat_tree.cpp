@@ -151,6 +151,36 @@ struct ContractionView {
   }
 };
 
+/// A draft by the numbers of its slots.
+class DraftView {
+ public:
+  DraftView(const WideDraft& draft, Memory& memory)
+      : draft_(draft), first_primitive_(memory, draft.leaf_sizes.size()) {
+    uint32_t next = 0;
+    for (size_t leaf = 0; leaf < draft.leaf_sizes.size(); ++leaf) {
+      first_primitive_[leaf] = next;
+      next += draft.leaf_sizes[leaf];
+    }
+  }
+
+  const Bounds& box_of(uint32_t slot) const { return draft_.boxes[slot]; }
+  bool is_leaf(uint32_t slot) const { return (draft_.children[slot] & kLeafFlag) != 0; }
+  uint32_t child_count(uint32_t slot) const { return node_of(slot).slot_count; }
+  uint32_t child(uint32_t slot, uint32_t i) const { return node_of(slot).first_slot + i; }
+  uint32_t primitive_count(uint32_t slot) const { return draft_.leaf_sizes[leaf_of(slot)]; }
+  void copy_primitives(uint32_t slot, uint32_t* to) const {
+    std::copy_n(draft_.primitive_ids.begin() + first_primitive_[leaf_of(slot)],
+                primitive_count(slot), to);
+  }
+
+ private:
+  const ContractedNode& node_of(uint32_t slot) const { return draft_.nodes[draft_.children[slot]]; }
+  uint32_t leaf_of(uint32_t slot) const { return draft_.children[slot] & ~kLeafFlag; }
+
+  const WideDraft& draft_;
+  Array<uint32_t> first_primitive_;
+};
+
 /// The nodes of a tree whose nodes have one parent each; root names the first of them.
 template <typename Tree>
 FlatTree flatten_unshared(const Tree& tree, uint32_t root, Memory& memory) {
@@ -204,6 +234,11 @@ FlatTree flatten(const BinaryBvh& binary, Memory& memory) {
 
 FlatTree flatten(const Contraction& contraction, const BinaryBvh& binary, Memory& memory) {
   return flatten_unshared(ContractionView{contraction, binary}, 0, memory);
+}
+
+FlatTree flatten(const WideDraft& draft, Memory& memory) {
+  if (draft.primitive_ids.empty()) return {};
+  return flatten_unshared(DraftView(draft, memory), 0, memory);
 }
 
 FlatTree flatten(const WideTree& tree, Memory& memory) {

@@ -23,4 +23,7 @@ FlatTree flatten(const BinaryBvh& binary, Memory& memory);
 /// A wide tree that is not packed, so that nothing is shared.
 FlatTree flatten(const Contraction& contraction, const BinaryBvh& binary, Memory& memory);
 
+/// The same.
+FlatTree flatten(const WideDraft& draft, Memory& memory);
+
 }  // namespace kiwami

@@ -72,7 +72,17 @@ class OptimalChooser {
 
   uint32_t choose(uint32_t binary_node, ChosenSlot* chosen) const {
     const uint32_t count = distribute(binary_node, width_, chosen);
-    return fill_from_ <= count ? fill(chosen, count) : count;
+    return fill_from_ <= count ? divide_leaves(*this, chosen, count, width_) : count;
+  }
+
+  // For divide_leaves.
+  uint32_t left_child(uint32_t index) const { return binary_.nodes[index].first; }
+  uint32_t right_child(uint32_t index) const { return binary_.nodes[index].first + 1; }
+  float added_weight(uint32_t index) const {
+    const BinaryNode& node = binary_.nodes[index];
+    if (node.is_leaf()) return std::numeric_limits<float>::infinity();
+    return measured_weight_of(node.first) + measured_weight_of(node.first + 1) -
+           measured_weight_of(index);
   }
 
  private:
@@ -180,37 +190,6 @@ class OptimalChooser {
     if (count > 1) return distribute(index, count, chosen);
     chosen[0] = {index, is_leaf(index)};
     return 1;
-  }
-
-  /// Divides leaves, those first whose halves add least weight, until the node is full or no leaf
-  /// can be divided; returns the number of children.
-  uint32_t fill(ChosenSlot* chosen, uint32_t count) const {
-    for (; count < width_; ++count) {
-      uint32_t best = count;
-      float least = std::numeric_limits<float>::infinity();
-      for (uint32_t i = 0; i < count; ++i) {
-        const float added = chosen[i].is_leaf ? added_weight(chosen[i].binary_node) : least;
-        if (added < least) {
-          least = added;
-          best = i;
-        }
-      }
-      if (best == count) break;
-      const uint32_t first = binary_.nodes[chosen[best].binary_node].first;
-      std::copy_backward(chosen + best + 1, chosen + count, chosen + count + 1);
-      chosen[best] = {first, true};
-      chosen[best + 1] = {first + 1, true};
-    }
-    return count;
-  }
-
-  /// What two leaves in place of one add to the weight of leaves; infinite where it cannot be
-  /// divided.
-  float added_weight(uint32_t index) const {
-    const BinaryNode& node = binary_.nodes[index];
-    if (node.is_leaf()) return std::numeric_limits<float>::infinity();
-    return measured_weight_of(node.first) + measured_weight_of(node.first + 1) -
-           measured_weight_of(index);
   }
 
   const BinaryBvh& binary_;

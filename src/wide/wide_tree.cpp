@@ -23,19 +23,51 @@ constexpr size_t kPackingBlock = 1024;
 /// So many rays count as much as the guess from areas that they correct.
 constexpr float kGuessWeight = 16.0f;
 
-/// The stages before packing.
+/// Where the owners of a draft go.
 struct Layout {
-  Contraction contraction;
-  SharedPlaces nodes;   ///< of the contracted nodes
-  SharedPlaces leaves;  ///< of the leaves, by number
+  SharedPlaces nodes;               ///< of the nodes
+  SharedPlaces leaves;              ///< of the leaves
+  Array<uint32_t> first_primitive;  ///< by leaf, among the draft's primitive_ids
 };
 
-/// What packing needs of the binary tree, so that this can be freed before.
-struct Contents {
-  Array<Bounds> boxes;              ///< by slot
-  Array<uint32_t> first_primitive;  ///< by leaf, among primitive_ids
-  Array<uint32_t> primitive_ids;    ///< leaf by leaf
-};
+Array<uint32_t> first_primitives(const Array<uint8_t>& leaf_sizes, Memory& memory) {
+  Array<uint32_t> first(memory, leaf_sizes.size());
+  uint32_t next = 0;
+  for (size_t leaf = 0; leaf < leaf_sizes.size(); ++leaf) {
+    first[leaf] = next;
+    next += leaf_sizes[leaf];
+  }
+  return first;
+}
+
+/// What remains of a binary tree when it is contracted.
+WideDraft make_draft(const BinaryBvh& binary, Contraction contraction, Memory& memory,
+                     const Parallel& parallel) {
+  const Array<ContractedSlot> slots = std::move(contraction.slots);
+  WideDraft draft{std::move(contraction.nodes),
+                  Array<uint32_t>(memory, slots.size()),
+                  Array<Bounds>(memory, slots.size()),
+                  std::move(contraction.leaf_sizes),
+                  {},
+                  contraction.depth,
+                  contraction.node_area,
+                  contraction.leaf_area,
+                  binary.has_duplicates};
+  const Array<uint32_t> first_primitive = first_primitives(draft.leaf_sizes, memory);
+  // Of a primitive that stands in a leaf twice, one is left out: so they may be fewer than before.
+  const size_t last = draft.leaf_sizes.size() - 1;
+  draft.primitive_ids = Array<uint32_t>(memory, first_primitive[last] + draft.leaf_sizes[last]);
+  parallel.for_blocks(slots.size(), kPackingBlock, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      draft.children[i] = slots[i].child;
+      draft.boxes[i] = binary.nodes[slots[i].binary_node].bounds;
+      if (!slots[i].is_leaf()) continue;
+      uint32_t* to = draft.primitive_ids.data() + first_primitive[slots[i].child & ~kLeafFlag];
+      copy_ids_below(binary, slots[i].binary_node, to);
+    }
+  });
+  return draft;
+}
 
 /// Ray specialized contraction: Y. Gu, Y. He, G. Blelloch, "Ray Specialized Contraction on Bounding
 /// Volume Hierarchies", CGF 34(7), 2015. Departs from it in that nodes are not contracted one by
@@ -53,65 +85,40 @@ SharedPlaces place(const Array<uint8_t>& sizes, const WideTreeConfig& config, Me
                              : place_alone(sizes, memory);
 }
 
-Layout make_layout(const BinaryBvh& binary, const TriangleSource& source,
-                   const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {
-  Layout layout{contract_by(binary, source, config, memory, parallel), {}, {}};
-  for (const uint8_t size : layout.contraction.leaf_sizes) {
-    if (size <= config.width) continue;
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "a leaf owns %u primitives, expected at most %u",
-                size, config.width);
-  }
-  const Array<ContractedNode>& nodes = layout.contraction.nodes;
-  Array<uint8_t> node_sizes(memory, nodes.size());
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    node_sizes[i] = static_cast<uint8_t>(nodes[i].slot_count);
-  }
-  layout.nodes = place(node_sizes, config, memory);
-  layout.leaves = place(layout.contraction.leaf_sizes, config, memory);
+/// Nodes and leaves are placed at the same time: each is a chain of decisions.
+Layout make_layout(const WideDraft& draft, const WideTreeConfig& config, Memory& memory,
+                   const Parallel& parallel) {
+  Layout layout;
+  parallel.for_each(2, [&](size_t part) {
+    if (part == 1) {
+      layout.leaves = place(draft.leaf_sizes, config, memory);
+      layout.first_primitive = first_primitives(draft.leaf_sizes, memory);
+      return;
+    }
+    Array<uint8_t> node_sizes(memory, draft.nodes.size());
+    for (size_t i = 0; i < draft.nodes.size(); ++i) {
+      node_sizes[i] = static_cast<uint8_t>(draft.nodes[i].slot_count);
+    }
+    layout.nodes = place(node_sizes, config, memory);
+  });
   return layout;
 }
 
-Contents extract_contents(const BinaryBvh& binary, const Contraction& contraction, Memory& memory,
-                          const Parallel& parallel) {
-  const Array<ContractedSlot>& slots = contraction.slots;
-  Contents contents{Array<Bounds>(memory, slots.size()),
-                    Array<uint32_t>(memory, contraction.leaf_sizes.size()),
-                    {}};
-  uint32_t next = 0;
-  for (size_t leaf = 0; leaf < contraction.leaf_sizes.size(); ++leaf) {
-    contents.first_primitive[leaf] = next;
-    next += contraction.leaf_sizes[leaf];
-  }
-  contents.primitive_ids = Array<uint32_t>(memory, next);
-  parallel.for_blocks(slots.size(), kPackingBlock, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      contents.boxes[i] = binary.nodes[slots[i].binary_node].bounds;
-      if (!slots[i].is_leaf()) continue;
-      uint32_t* to =
-          contents.primitive_ids.data() + contents.first_primitive[slots[i].child & ~kLeafFlag];
-      copy_ids_below(binary, slots[i].binary_node, to);
-    }
-  });
-  return contents;
-}
-
 /// What a slot refers to once all have their places.
-ChildReference reference_of(const ContractedSlot& slot, const Layout& layout,
-                            const WideTree& tree) {
-  const uint32_t number = slot.child & ~kLeafFlag;
-  const SharedPlace& place =
-      slot.is_leaf() ? layout.leaves.places[number] : layout.nodes.places[number];
-  return slot.is_leaf() ? tree.leaf_reference(place.index, place.mask)
-                        : tree.node_reference(place.index, place.mask);
+ChildReference reference_of(uint32_t child, const Layout& layout, const WideTree& tree) {
+  const bool is_leaf = (child & kLeafFlag) != 0;
+  const uint32_t number = child & ~kLeafFlag;
+  const SharedPlace& place = is_leaf ? layout.leaves.places[number] : layout.nodes.places[number];
+  return is_leaf ? tree.leaf_reference(place.index, place.mask)
+                 : tree.node_reference(place.index, place.mask);
 }
 
 /// Writes the nodes and leaf blocks of a tree. Block is its LeafBlock or IndexBlock.
 template <int N, typename Block>
 class Packer {
  public:
-  Packer(const Contents& contents, const TriangleSource& source, const Layout& layout,
-         WideTree& tree)
-      : contents_(contents),
+  Packer(const WideDraft& draft, const TriangleSource& source, const Layout& layout, WideTree& tree)
+      : draft_(draft),
         source_(source),
         layout_(layout),
         tree_(tree),
@@ -132,12 +139,11 @@ class Packer {
       std::fill(leaves_ + begin, leaves_ + end, unused_leaf());
     });
     // Owners of one node write different slots, so they need no order.
-    const Array<ContractedNode>& owners = layout_.contraction.nodes;
+    const Array<ContractedNode>& owners = draft_.nodes;
     parallel.for_blocks(owners.size(), kPackingBlock, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) pack_node(owners[i], layout_.nodes.places[i]);
     });
-    const ContractedSlot& root = layout_.contraction.slots[0];
-    if (root.is_leaf()) pack_leaf(root);
+    if (draft_.children[0] & kLeafFlag) pack_leaf(0);
   }
 
  private:
@@ -162,24 +168,23 @@ class Packer {
   void pack_node(const ContractedNode& owner, const SharedPlace& place) {
     WideNode<N>& node = nodes_[place.index];
     for (uint32_t i = 0; i < owner.slot_count; ++i) {
-      const ContractedSlot& slot = layout_.contraction.slots[owner.first_slot + i];
+      const uint32_t slot = owner.first_slot + i;
       const uint32_t target = place.first + i;
-      const Bounds& box = contents_.boxes[owner.first_slot + i];
+      const Bounds& box = draft_.boxes[slot];
       for (int axis = 0; axis < 3; ++axis) {
         const float centre = tree_.view.centre[axis];
         node.bounds[axis][0][target] = subtract_down(box.lower[axis], centre);
         node.bounds[axis][1][target] = subtract_up(box.upper[axis], centre);
       }
-      node.child[target] = reference_of(slot, layout_, tree_);
-      if (slot.is_leaf()) pack_leaf(slot);
+      node.child[target] = reference_of(draft_.children[slot], layout_, tree_);
+      if (draft_.children[slot] & kLeafFlag) pack_leaf(draft_.children[slot] & ~kLeafFlag);
     }
   }
 
-  void pack_leaf(const ContractedSlot& slot) {
-    const uint32_t leaf = slot.child & ~kLeafFlag;
+  void pack_leaf(uint32_t leaf) {
     const SharedPlace& place = layout_.leaves.places[leaf];
-    const uint32_t* ids = contents_.primitive_ids.data() + contents_.first_primitive[leaf];
-    for (uint32_t i = 0; i < layout_.contraction.leaf_sizes[leaf]; ++i) {
+    const uint32_t* ids = draft_.primitive_ids.data() + layout_.first_primitive[leaf];
+    for (uint32_t i = 0; i < draft_.leaf_sizes[leaf]; ++i) {
       pack_primitive(ids[i], leaves_[place.index], place.first + i);
     }
   }
@@ -197,7 +202,7 @@ class Packer {
     }
   }
 
-  const Contents& contents_;
+  const WideDraft& draft_;
   const TriangleSource& source_;
   const Layout& layout_;
   const WideTree& tree_;
@@ -206,35 +211,40 @@ class Packer {
 };
 
 template <int N>
-void pack(const Contents& contents, const TriangleSource& source, const Layout& layout,
+void pack(const WideDraft& draft, const TriangleSource& source, const Layout& layout,
           WideTree& tree, Memory& memory, const Parallel& parallel) {
   tree.memory = Array<unsigned char>(memory, tree.node_bytes() + tree.leaf_bytes());
   if (tree.leaf_layout == LeafLayout::kTriangles) {
-    Packer<N, LeafBlock<N>>(contents, source, layout, tree).run(parallel);
+    Packer<N, LeafBlock<N>>(draft, source, layout, tree).run(parallel);
   } else {
-    Packer<N, IndexBlock<N>>(contents, source, layout, tree).run(parallel);
+    Packer<N, IndexBlock<N>>(draft, source, layout, tree).run(parallel);
   }
+}
+
+void check_width(uint32_t width) {
+  if (width == 4 || width == 8 || width == 16) return;
+  throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "width is %u, expected 4, 8 or 16", width);
 }
 
 /// The frame of the stored boxes. Boxes lie within the root's, and rounding keeps that order, so
 /// the root has the greatest bounds.
-void set_frame(const Bounds& root_box, TreeView& view) {
+void set_frame(const WideDraft& draft, TreeView& view) {
   for (int axis = 0; axis < 3; ++axis) {
-    const float lower = root_box.lower[axis], upper = root_box.upper[axis];
+    const float lower = draft.boxes[0].lower[axis], upper = draft.boxes[0].upper[axis];
     const float centre = 0.5f * lower + 0.5f * upper;
     view.centre[axis] = centre;
     view.greatest_bound[axis] = std::max(-subtract_down(lower, centre), subtract_up(upper, centre));
   }
 }
 
-double sah_cost_of(const Contraction& contraction, double root_area, const WideTreeConfig& config) {
+double sah_cost_of(const WideDraft& draft, const WideTreeConfig& config) {
+  const double root_area = draft.boxes[0].half_area();
   // Points and lines have no area: there, each node is as likely to be met as the root.
   if (!(root_area > 0.0)) {
-    return config.node_cost * static_cast<double>(contraction.nodes.size()) +
-           config.leaf_cost * static_cast<double>(contraction.leaf_sizes.size());
+    return config.node_cost * static_cast<double>(draft.nodes.size()) +
+           config.leaf_cost * static_cast<double>(draft.leaf_sizes.size());
   }
-  return (config.node_cost * contraction.node_area + config.leaf_cost * contraction.leaf_area) /
-         root_area;
+  return (config.node_cost * draft.node_area + config.leaf_cost * draft.leaf_area) / root_area;
 }
 
 }  // namespace
@@ -252,46 +262,59 @@ Contraction contract_by(const BinaryBvh& binary, const TriangleSource& source,
   return contract_optimally(binary, optimal, memory, parallel);
 }
 
-WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
-                         const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {
-  if (config.width != 4 && config.width != 8 && config.width != 16) {
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "width is %u, expected 4, 8 or 16", config.width);
-  }
+WideTree pack_wide_tree(const WideDraft& draft, const TriangleSource& source,
+                        const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {
   WideTree tree;
   tree.width = tree.leaf_width = config.width;
   tree.leaf_layout = tree.view.leaf_layout = config.leaf_layout;
-  if (binary.primitive_ids.empty()) {
+  if (draft.primitive_ids.empty()) {
     tree.memory = Array<unsigned char>(memory, 0);
     return tree;
   }
-  const Layout layout = make_layout(binary, source, config, memory, parallel);
-  const Contraction& contraction = layout.contraction;
-  const Bounds root_box = binary.nodes[0].bounds;
+  const Layout layout = make_layout(draft, config, memory, parallel);
   tree.node_count = layout.nodes.count;
   tree.leaf_block_count = layout.leaves.count;
-  set_frame(root_box, tree.view);
-  tree.view.root = reference_of(contraction.slots[0], layout, tree);
-  tree.used_slots = contraction.slots.size() - 1;
-  tree.view.has_duplicates = binary.has_duplicates ? 1 : 0;
-  tree.depth = contraction.depth;
-  tree.sah_cost = sah_cost_of(contraction, root_box.half_area(), config);
-  const Contents contents = extract_contents(binary, contraction, memory, parallel);
-  tree.used_lanes = contents.primitive_ids.size();
-  binary = BinaryBvh();
+  set_frame(draft, tree.view);
+  tree.view.root = reference_of(draft.children[0], layout, tree);
+  tree.view.has_duplicates = draft.has_duplicates ? 1 : 0;
+  tree.used_slots = draft.children.size() - 1;
+  tree.used_lanes = draft.primitive_ids.size();
+  tree.depth = draft.depth;
+  tree.sah_cost = sah_cost_of(draft, config);
   switch (config.width) {
     case 4:
-      pack<4>(contents, source, layout, tree, memory, parallel);
+      pack<4>(draft, source, layout, tree, memory, parallel);
       break;
     case 8:
-      pack<8>(contents, source, layout, tree, memory, parallel);
+      pack<8>(draft, source, layout, tree, memory, parallel);
       break;
     default:
-      pack<16>(contents, source, layout, tree, memory, parallel);
+      pack<16>(draft, source, layout, tree, memory, parallel);
       break;
   }
   tree.view.memory = tree.memory.data();
   tree.view.memory_bytes = tree.memory.size();
   return tree;
+}
+
+WideDraft contract_to_draft(BinaryBvh binary, const TriangleSource& source,
+                            const WideTreeConfig& config, Memory& memory,
+                            const Parallel& parallel) {
+  check_width(config.width);
+  if (binary.primitive_ids.empty()) return {};
+  Contraction contraction = contract_by(binary, source, config, memory, parallel);
+  for (const uint8_t size : contraction.leaf_sizes) {
+    if (size <= config.width) continue;
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "a leaf owns %u primitives, expected at most %u",
+                size, config.width);
+  }
+  return make_draft(binary, std::move(contraction), memory, parallel);
+}
+
+WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
+                         const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {
+  const WideDraft draft = contract_to_draft(std::move(binary), source, config, memory, parallel);
+  return pack_wide_tree(draft, source, config, memory, parallel);
 }
 
 }  // namespace kiwami

@@ -11,6 +11,7 @@
 #include "parallel/parallel.h"
 #include "wide/contraction.h"
 #include "wide/wide_bvh.h"
+#include "wide/wide_draft.h"
 
 namespace kiwami {
 
@@ -83,10 +84,18 @@ Contraction contract_by(const BinaryBvh& binary, const TriangleSource& source,
                         const WideTreeConfig& config, Memory& memory, const Parallel& parallel);
 
 /// Contracts a binary tree whose leaves own at most config.width primitives. Takes the tree, to
-/// free it before the wide one is written. A tree over boxes has a source without meshes, and index
+/// free it before the wide one is written.
+WideDraft contract_to_draft(BinaryBvh binary, const TriangleSource& source,
+                            const WideTreeConfig& config, Memory& memory, const Parallel& parallel);
+
+/// contract_to_draft, then pack_wide_tree. A tree over boxes has a source without meshes, and index
 /// leaves.
 WideTree build_wide_tree(BinaryBvh binary, const TriangleSource& source,
                          const WideTreeConfig& config, Memory& memory, const Parallel& parallel);
+
+/// Merges leaf nodes and leaf blocks as the config says, and writes what the kernels read.
+WideTree pack_wide_tree(const WideDraft& draft, const TriangleSource& source,
+                        const WideTreeConfig& config, Memory& memory, const Parallel& parallel);
 
 /// Checks every invariant of the tree: references and depth in range; each slot and lane owned by
 /// exactly one path; boxes (in the stored frame, rounded outwards) around all below; each of the

@@ -22,6 +22,10 @@ std::vector<uint32_t> methods_of(uint32_t stage) {
   return methods;
 }
 
+bool makes_no_binary_tree(uint32_t builder) {
+  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN;
+}
+
 class Pipeline : public testing::Test {
  protected:
   Pipeline() : device_(make_device()) {}
@@ -72,6 +76,7 @@ TEST_F(Pipeline, EveryMethodGivesTheSameAnswers) {
       for (const uint32_t contraction : methods_of(KIWAMI_STAGE_CONTRACTION)) {
         EXPECT_TRUE(are_equal(answers(triangles, builder, {}, contraction), expected))
             << kiwami_method_name(KIWAMI_STAGE_BUILDER, builder) << ", " << count;
+        if (makes_no_binary_tree(builder)) continue;
         for (const uint32_t optimizer : methods_of(KIWAMI_STAGE_OPTIMIZER)) {
           EXPECT_TRUE(are_equal(answers(triangles, builder, {optimizer}, contraction), expected))
               << kiwami_method_name(KIWAMI_STAGE_BUILDER, builder) << " + "
@@ -172,6 +177,8 @@ TEST_F(Pipeline, ParametersOfBuildersChangeTheTreeAndNoAnswer) {
                                {KIWAMI_BUILDER_LBVH, KIWAMI_PARAMETER_CURVE_CODE},
                                {KIWAMI_BUILDER_PLOC, KIWAMI_PARAMETER_CURVE_CODE},
                                {KIWAMI_BUILDER_AAC, KIWAMI_PARAMETER_CURVE_CODE},
+                               {KIWAMI_BUILDER_WIDE_BOTTOM_UP, KIWAMI_PARAMETER_CURVE_CODE},
+                               {KIWAMI_BUILDER_WIDE_TOP_DOWN, KIWAMI_PARAMETER_BIN_COUNT},
                                {KIWAMI_BUILDER_AAC, KIWAMI_PARAMETER_AAC_QUALITY}};
   for (const auto& [builder, parameter] : cases) {
     double bounds[2];
@@ -225,6 +232,24 @@ TEST_F(Pipeline, WhatIsSetAfterAQualityReplacesItsPart) {
     return info_of(scene).sah_cost;
   };
   EXPECT_NE(cost(false), cost(true));
+}
+
+TEST_F(Pipeline, BuildersOfWideTreesTakeOptimizersOfWideTreesOnly) {
+  const Triangles triangles = random_triangles(400, 9);
+  const std::vector<kiwami_hit> expected =
+      answers(triangles, KIWAMI_BUILDER_BINNED_SAH, {}, KIWAMI_CONTRACTION_OPTIMAL);
+  EXPECT_TRUE(are_equal(answers(triangles, KIWAMI_BUILDER_WIDE_TOP_DOWN,
+                                {KIWAMI_OPTIMIZER_REORDER_SATO, KIWAMI_OPTIMIZER_REORDER_NARY},
+                                KIWAMI_CONTRACTION_RAY_DISTRIBUTION),
+                        expected));
+  const Scene scene = make_scene(device_);
+  const uint32_t optimizers[] = {KIWAMI_OPTIMIZER_REORDER_SATO, KIWAMI_OPTIMIZER_ROTATION};
+  set(scene, KIWAMI_PARAMETER_BUILDER, KIWAMI_BUILDER_WIDE_BOTTOM_UP);
+  EXPECT_EQ(kiwami_scene_set_optimizers(scene.get(), optimizers, 2), KIWAMI_OK);
+  EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(last_error(device_.get()),
+            "builder wide_bottom_up makes no binary tree that rotation could change, expected no "
+            "optimizers but those of wide trees");
 }
 
 TEST_F(Pipeline, ErrorsNameWhatIsWrong) {

@@ -187,7 +187,8 @@ TEST(Bench, MakesATableOfPipelines) {
   ASSERT_EQ(pipelines.size(), 2u);
   EXPECT_EQ(pipelines["soup:3000:1"], pipelines["sphere:2"]);
   for (const char* name : {"binned_sah, optimal, merged", "binned_sah, surface_area, merged",
-                           "lbvh + rotation, optimal, merged"}) {
+                           "lbvh + rotation, optimal, merged", "wide_bottom_up, merged",
+                           "wide_top_down + reorder_sato, merged"}) {
     EXPECT_EQ(pipelines["sphere:2"].count(name), 1u) << name;
   }
   for (const auto& [rays, of_rays] : hashes) EXPECT_EQ(of_rays.size(), 1u) << rays;

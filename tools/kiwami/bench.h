@@ -36,7 +36,7 @@ struct BenchSettings {
   bool robust = false;  ///< Embree's robust scene flag
   EmbreeQuality embree_quality = EmbreeQuality::kDefault;
   uint32_t rounds = 5;
-  Clock clock = Clock::kWall;  ///< of the traces; builds are timed by what passes
+  Clock clock = Clock::kWall;  ///< of traces, and of builds in tables of pipelines
   size_t ray_count = 1u << 20;
 };
 

@@ -74,8 +74,11 @@ std::unique_ptr<BuiltScene> PipelineBench::measure_builds(const BuildOptions& pi
     // The first device is the last one of a round, so that its scene stays.
     for (size_t i = devices_.size(); i-- > 0;) {
       scene.reset();
+      const double start = seconds_now(Clock::kProcessor);
       scene = std::make_unique<BuiltScene>(*devices_[i], file_, pipeline);
-      seconds[i].push_back(scene->info().build_seconds);
+      seconds[i].push_back(settings_.clock == Clock::kProcessor
+                               ? seconds_now(Clock::kProcessor) - start
+                               : scene->info().build_seconds);
     }
   }
   for (size_t i = 0; i < devices_.size(); ++i) {
@@ -153,10 +156,13 @@ std::vector<BuildOptions> choose_pipelines(const std::vector<std::string>& build
     pipeline.optimizers.clear();
     pipelines.push_back(pipeline);
     for (const std::string& optimizer : method_names(KIWAMI_STAGE_OPTIMIZER)) {
-      pipeline.optimizers = {method_of_name(KIWAMI_STAGE_OPTIMIZER, optimizer)};
+      const uint32_t method = method_of_name(KIWAMI_STAGE_OPTIMIZER, optimizer);
+      if (makes_wide_tree(pipeline.builder) && !acts_on_wide_tree(method)) continue;
+      pipeline.optimizers = {method};
       pipelines.push_back(pipeline);
     }
   }
+  if (makes_wide_tree(base.builder)) return pipelines;
   for (const std::string& contraction : method_names(KIWAMI_STAGE_CONTRACTION)) {
     BuildOptions pipeline = base;
     pipeline.optimizers.clear();

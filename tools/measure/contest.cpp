@@ -6,7 +6,6 @@
 #include <ctime>
 
 namespace kiwami::tools {
-namespace {
 
 double seconds_now(Clock clock) {
   if (clock == Clock::kProcessor) {
@@ -17,8 +16,6 @@ double seconds_now(Clock clock) {
   const std::chrono::duration<double> now = std::chrono::steady_clock::now().time_since_epoch();
   return now.count();
 }
-
-}  // namespace
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<ptrdiff_t>((values.size() - 1) / 2);

@@ -21,6 +21,9 @@ enum class Clock {
                ///< that is busy with other work
 };
 
+/// The seconds that a clock shows.
+double seconds_now(Clock clock);
+
 /// One side of a comparison. `prepare` and `check` are not timed.
 struct Contender {
   std::function<void()> prepare;

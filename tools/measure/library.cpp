@@ -299,12 +299,22 @@ BuildOptions build_options_of(uint32_t quality) {
   return options;
 }
 
+bool makes_wide_tree(uint32_t builder) {
+  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN;
+}
+
+bool acts_on_wide_tree(uint32_t optimizer) {
+  return optimizer == KIWAMI_OPTIMIZER_REORDER_SATO || optimizer == KIWAMI_OPTIMIZER_REORDER_NARY;
+}
+
 std::string pipeline_name(const BuildOptions& options) {
   std::string name = kiwami_method_name(KIWAMI_STAGE_BUILDER, options.builder);
   for (const uint32_t method : options.optimizers) {
     name += std::string(" + ") + kiwami_method_name(KIWAMI_STAGE_OPTIMIZER, method);
   }
-  name += std::string(", ") + kiwami_method_name(KIWAMI_STAGE_CONTRACTION, options.contraction);
+  if (!makes_wide_tree(options.builder)) {
+    name += std::string(", ") + kiwami_method_name(KIWAMI_STAGE_CONTRACTION, options.contraction);
+  }
   name += options.merge_leaves ? ", merged" : ", unmerged";
   return name + (options.layout == KIWAMI_LAYOUT_COMPACT ? ", compact" : "");
 }

@@ -71,6 +71,12 @@ std::vector<std::string> method_names(uint32_t stage);
 /// The number of a method of a KIWAMI_STAGE_*; throws LibraryError that lists the names.
 uint32_t method_of_name(uint32_t stage, const std::string& name);
 
+/// Whether a builder leaves no binary tree to optimise and contract.
+bool makes_wide_tree(uint32_t builder);
+
+/// Whether an optimiser needs no binary tree.
+bool acts_on_wide_tree(uint32_t optimizer);
+
 /// "binned_sah + rotation, optimal, merged", and ", compact" where that is the layout.
 std::string pipeline_name(const BuildOptions& options);
 

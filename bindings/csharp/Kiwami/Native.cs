@@ -568,8 +568,10 @@ internal static class Native {
   public const uint KIWAMI_BUILDER_AAC = 6;
   public const uint KIWAMI_BUILDER_MINI_TREE = 7;
   public const uint KIWAMI_BUILDER_OIBVH = 8;
+  public const uint KIWAMI_BUILDER_WIDE_BOTTOM_UP = 9;
   public const uint KIWAMI_BUILDER_STR = 10;
   public const uint KIWAMI_BUILDER_TRBVH = 11;
+  public const uint KIWAMI_BUILDER_WIDE_TOP_DOWN = 12;
   public const uint KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1;
   public const uint KIWAMI_OPTIMIZER_ROTATION = 2;
   public const uint KIWAMI_OPTIMIZER_TREELET = 3;

@@ -73,8 +73,10 @@ final class Native {
   static final int KIWAMI_BUILDER_AAC = 6;
   static final int KIWAMI_BUILDER_MINI_TREE = 7;
   static final int KIWAMI_BUILDER_OIBVH = 8;
+  static final int KIWAMI_BUILDER_WIDE_BOTTOM_UP = 9;
   static final int KIWAMI_BUILDER_STR = 10;
   static final int KIWAMI_BUILDER_TRBVH = 11;
+  static final int KIWAMI_BUILDER_WIDE_TOP_DOWN = 12;
   static final int KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1;
   static final int KIWAMI_OPTIMIZER_ROTATION = 2;
   static final int KIWAMI_OPTIMIZER_TREELET = 3;
