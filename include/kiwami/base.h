@@ -63,7 +63,8 @@ enum {
   KIWAMI_ERROR_CAPACITY = -9,        /* the caller's array is too small: it holds what fits, and the
                                       * call tells what it needs */
   KIWAMI_ERROR_INVALID_FILE = -10,   /* a file is none of this library's, or is damaged */
-  KIWAMI_ERROR_IO = -11              /* the operating system could not read or write a file */
+  KIWAMI_ERROR_IO = -11,             /* the operating system could not read or write a file */
+  KIWAMI_ERROR_CANCELLED = -12       /* the caller's progress function asked to cancel */
 };
 
 /* See device.h. */

@@ -186,7 +186,7 @@ KIWAMI_API kiwami_result kiwami_bvh_build(kiwami_device* device, const kiwami_bv
  * in several leaves (spatial splits) get their whole box in each.
  *   boxes     the boxes of all primitives, as many and in the order of kiwami_bvh_build, those that
  *             were left out then included; stride bytes apart (0: 24). NULL for a tree over a mesh,
- *             whose vertices are read anew: they may have changed with KIWAMI_MESH_SHARE_BUFFERS.
+ *             whose vertices are read anew (see kiwami_triangle_mesh_update_vertices).
  *   count     the number of boxes; 0 for a tree over a mesh
  *   errors    INVALID_ARGUMENT: NULL, a wrong count, a stride too small, a primitive of the tree
  * that is out of range now (the tree stays as it was); INVALID_STATE: a tree of a scene;

@@ -15,8 +15,11 @@ extern "C" {
 typedef struct kiwami_geometry kiwami_geometry;
 
 enum {
-  /* The library keeps the pointers instead of copying the buffers. They must stay readable and
-   * unchanged until the last reference to the geometry is gone: scenes hold one. */
+  /* The library keeps the pointers instead of copying the buffers. They must stay readable until
+   * the last reference to the geometry is gone: scenes hold one. They may change (vertices see
+   * kiwami_triangle_mesh_update_vertices) while no commit, trace, validation or measurement of a
+   * scene of theirs runs, and such a scene has to be committed or refitted before it is used again.
+   */
   KIWAMI_MESH_SHARE_BUFFERS = 1u << 0
 };
 
@@ -57,6 +60,31 @@ KIWAMI_API kiwami_result kiwami_triangle_mesh_desc_init(kiwami_triangle_mesh_des
 KIWAMI_API kiwami_result kiwami_triangle_mesh_create(kiwami_device* device,
                                                      const kiwami_triangle_mesh_desc* desc,
                                                      kiwami_geometry** geometry);
+
+/* Gives a mesh other vertices, as many as it has. Takes effect with the next commit or refit
+ * (kiwami_scene_refit) of each scene that the mesh is attached to; until then what was committed
+ * keeps the vertices that it was committed with.
+ *   vertices        vertex_count vertices of three floats, the first one vertex_offset bytes from
+ *                   vertices on, vertex_stride bytes apart (0: 12), at any address. Copied buffers:
+ *                   copied; from the first call on the mesh holds two copies. Shared buffers: kept
+ *                   in place of the old ones, and NULL says that the old ones have changed where
+ *                   they are (then offset and stride are ignored). NULL else only if there are no
+ *                   vertices
+ *   errors          INVALID_ARGUMENT: geometry is NULL or no triangle mesh, vertices is NULL, a
+ *                   stride below 12, an extent that overflows; OUT_OF_MEMORY; CALLBACK: the runner
+ *                   failed. Then nothing has changed
+ * [one thread per object], and not during a commit of a scene that the mesh is attached to; since
+ * 0.1 */
+KIWAMI_API kiwami_result kiwami_triangle_mesh_update_vertices(kiwami_geometry* geometry,
+                                                              const void* vertices,
+                                                              uint64_t vertex_offset,
+                                                              uint64_t vertex_stride);
+
+/* Changes the mask of a geometry: a ray meets it only if (ray.mask & mask) != 0. Takes effect with
+ * the next commit or refit of each scene that it is attached to.
+ *   errors          INVALID_ARGUMENT: geometry is NULL
+ * [one thread per object], and not during a commit of a scene that it is attached to; since 0.1 */
+KIWAMI_API kiwami_result kiwami_geometry_set_mask(kiwami_geometry* geometry, uint32_t mask);
 
 /* Adds a reference. NULL is ignored. [any thread]; since 0.1 */
 KIWAMI_API void kiwami_geometry_retain(kiwami_geometry* geometry);

@@ -17,6 +17,14 @@ typedef struct kiwami_scene kiwami_scene;
 /* See trace.h. */
 struct kiwami_ray;
 
+/* Tells how far a commit is: a fraction from 0 to 1, an estimate that never falls; 0 comes first
+ * and, where the commit succeeds, 1 last. Called by the thread that commits and by the device's
+ * threads (those of its runner), never by two at a time; the others go on meanwhile. It may call
+ * anything but what names the scene that is being committed.
+ *   user      as it was given to kiwami_scene_set_progress
+ *   returns   0 to go on, any other number to cancel */
+typedef int32_t (*kiwami_progress)(void* user, double fraction);
+
 /* What can be tuned, by kiwami_scene_set_parameter. The numbers are pinned; new ones are added,
  * with gaps between them. */
 enum {
@@ -132,7 +140,8 @@ typedef struct kiwami_scene_info {
   float bounds_min[3];       /* of the triangles that can be hit; +inf when there are none */
   float bounds_max[3];       /* -inf when there are none */
   uint64_t reference_count;  /* places of triangles in leaves: triangle_count, or more where a
-                              * builder divides space */
+                              * builder divides space or triangles have vanished since the build */
+  uint64_t refit_count;      /* commits since the last build that kept its tree */
 } kiwami_scene_info;
 
 /* Makes an empty scene, which must be committed before it is traced.
@@ -159,6 +168,20 @@ KIWAMI_API kiwami_result kiwami_scene_attach(kiwami_scene* scene, kiwami_geometr
  *   errors    INVALID_ARGUMENT: no geometry has this number
  * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_detach(kiwami_scene* scene, uint32_t geometry_id);
+
+/* Puts another geometry in the place of an attached one, under the same number. Takes effect with
+ * the next commit, or refit where it has as many triangles.
+ *   errors    INVALID_ARGUMENT: NULL, a geometry of another device, or no geometry has this number
+ * [one thread per object]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_replace(kiwami_scene* scene, uint32_t geometry_id,
+                                              kiwami_geometry* geometry);
+
+/* Leaves a geometry out of the next commits (is_enabled 0) or takes it in again (any other number;
+ * so are all at first). It stays attached and keeps its number.
+ *   errors    INVALID_ARGUMENT: scene is NULL, or no geometry has this number
+ * [one thread per object]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_enable(kiwami_scene* scene, uint32_t geometry_id,
+                                             int32_t is_enabled);
 
 /* Sets one of KIWAMI_PARAMETER_*. Takes effect with the next commit.
  *   errors    INVALID_ARGUMENT: scene is NULL, an unknown parameter, a value outside its bounds
@@ -211,6 +234,17 @@ KIWAMI_API kiwami_result kiwami_quality_methods(uint32_t quality, uint32_t* buil
  * the number. Numbers are below 256. Static text. [any thread]; since 0.1 */
 KIWAMI_API const char* kiwami_method_name(uint32_t stage, uint32_t method);
 
+/* Sets who is told how far the next commits and refits of the scene are, and may cancel them. A
+ * commit that is cancelled returns KIWAMI_ERROR_CANCELLED, soon: no task begins any more; a method
+ * that runs on one thread (such as KIWAMI_OPTIMIZER_REINSERTION) ends first. As after every error, the last committed structure stays in use, the scene can be edited, and nothing is
+ * left of the commit.
+ *   function  NULL: nobody, the default
+ *   user      handed to function as it is
+ *   errors    INVALID_ARGUMENT: scene is NULL
+ * [one thread per object]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_set_progress(kiwami_scene* scene, kiwami_progress function,
+                                                   void* user);
+
 /* Builds the acceleration structure over the attached geometries, on the device's threads. On
  * error the last committed structure stays in use.
  *   errors    INVALID_ARGUMENT: a shared index buffer now holds an index at or beyond its vertex
@@ -218,6 +252,21 @@ KIWAMI_API const char* kiwami_method_name(uint32_t stage, uint32_t method);
  *             failed; VALIDATION: KIWAMI_PARAMETER_VALIDATE_BUILD found a broken invariant
  * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_commit(kiwami_scene* scene);
+
+/* Commits the scene as kiwami_scene_commit does, but keeps the tree where it can: it moves the
+ * boxes of the last committed one, which is much sooner done than a build. The answers are those of
+ * a build; the further things have moved against each other, the slower they come (sah_cost tells).
+ * It can where the tree was built (not loaded), all attached and enabled geometries are triangle
+ * meshes that have the numbers and
+ * the triangle counts of the last commit, and no triangle can be hit that could not be hit when the
+ * tree was built (nor, where leaves hold ids alone, the other way round); else it builds. Vertices,
+ * indices and masks may be others; parameters that have changed wait for the next commit. Triangles
+ * that can not be hit any more vanish, and come back when they can. Primitives that stand in
+ * several leaves (spatial splits) get their whole box in each. From the first refit until the next
+ * commit the scene keeps the structure before the last one, to write the next into it. errors    as
+ * kiwami_scene_commit; on error the last committed structure stays in use [one thread per object];
+ * since 0.1 */
+KIWAMI_API kiwami_result kiwami_scene_refit(kiwami_scene* scene);
 
 /* Says what the last commit made.
  *   info      struct_size set by the caller; the fields that fit are filled

@@ -63,6 +63,8 @@ const char* kiwami_result_name(kiwami_result result) {
       return "capacity exceeded";
     case KIWAMI_ERROR_INVALID_FILE:
       return "invalid file";
+    case KIWAMI_ERROR_CANCELLED:
+      return "cancelled";
     case KIWAMI_ERROR_IO:
       return "input or output failed";
     default:

@@ -72,6 +72,10 @@ inline const Device* device_of(const kiwami_bvh* bvh) {
   return bvh ? &object_of(bvh)->device() : nullptr;
 }
 
+inline const Device* device_of(kiwami_geometry* geometry) {
+  return geometry ? &object_of(geometry)->device() : nullptr;
+}
+
 /// What a scene committed; throws Error for a scene that is NULL or was never committed.
 inline CommittedScene& committed_of(const kiwami_scene* scene) {
   check_not_null(scene, "scene");

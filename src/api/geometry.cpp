@@ -39,6 +39,25 @@ kiwami_result kiwami_triangle_mesh_create(kiwami_device* device,
   });
 }
 
+kiwami_result kiwami_triangle_mesh_update_vertices(kiwami_geometry* geometry, const void* vertices,
+                                                   uint64_t vertex_offset, uint64_t vertex_stride) {
+  return guarded(device_of(geometry), [&] {
+    check_not_null(geometry, "geometry");
+    if (object_of(geometry)->kind() != GeometryKind::kTriangleMesh) {
+      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "geometry is none, expected a triangle mesh");
+    }
+    static_cast<TriangleMesh*>(object_of(geometry))
+        ->update_vertices(vertices, vertex_offset, vertex_stride);
+  });
+}
+
+kiwami_result kiwami_geometry_set_mask(kiwami_geometry* geometry, uint32_t mask) {
+  return guarded(device_of(geometry), [&] {
+    check_not_null(geometry, "geometry");
+    object_of(geometry)->set_mask(mask);
+  });
+}
+
 void kiwami_geometry_retain(kiwami_geometry* geometry) {
   if (geometry) object_of(geometry)->retain();
 }

@@ -12,6 +12,15 @@ namespace {
 
 constexpr size_t kMinimumInfoSize = 8;
 
+void check_fits(const kiwami_scene* scene, kiwami_geometry* geometry) {
+  check_not_null(scene, "scene");
+  check_not_null(geometry, "geometry");
+  if (&object_of(geometry)->device() != &object_of(scene)->device()) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "geometry is of another device, expected one of the scene's device");
+  }
+}
+
 }  // namespace
 
 extern "C" {
@@ -36,12 +45,7 @@ void kiwami_scene_release(kiwami_scene* scene) {
 kiwami_result kiwami_scene_attach(kiwami_scene* scene, kiwami_geometry* geometry,
                                   uint32_t* geometry_id) {
   return guarded(device_of(scene), [&] {
-    check_not_null(scene, "scene");
-    check_not_null(geometry, "geometry");
-    if (&object_of(geometry)->device() != &object_of(scene)->device()) {
-      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
-                  "geometry is of another device, expected one of the scene's device");
-    }
+    check_fits(scene, geometry);
     const uint32_t id = object_of(scene)->attach(*object_of(geometry));
     if (geometry_id) *geometry_id = id;
   });
@@ -51,6 +55,21 @@ kiwami_result kiwami_scene_detach(kiwami_scene* scene, uint32_t geometry_id) {
   return guarded(device_of(scene), [&] {
     check_not_null(scene, "scene");
     object_of(scene)->detach(geometry_id);
+  });
+}
+
+kiwami_result kiwami_scene_replace(kiwami_scene* scene, uint32_t geometry_id,
+                                   kiwami_geometry* geometry) {
+  return guarded(device_of(scene), [&] {
+    check_fits(scene, geometry);
+    object_of(scene)->replace(geometry_id, *object_of(geometry));
+  });
+}
+
+kiwami_result kiwami_scene_enable(kiwami_scene* scene, uint32_t geometry_id, int32_t is_enabled) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    object_of(scene)->enable(geometry_id, is_enabled != 0);
   });
 }
 
@@ -106,11 +125,26 @@ const char* kiwami_method_name(uint32_t stage, uint32_t method) {
   return method_name(stage, method);
 }
 
+kiwami_result kiwami_scene_set_progress(kiwami_scene* scene, kiwami_progress function, void* user) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    object_of(scene)->set_progress(function, user);
+  });
+}
+
 kiwami_result kiwami_scene_commit(kiwami_scene* scene) {
   return guarded(device_of(scene), [&] {
     check_not_null(scene, "scene");
     const DefaultFloatEnvironment environment;
     object_of(scene)->commit();
+  });
+}
+
+kiwami_result kiwami_scene_refit(kiwami_scene* scene) {
+  return guarded(device_of(scene), [&] {
+    check_not_null(scene, "scene");
+    const DefaultFloatEnvironment environment;
+    object_of(scene)->refit();
   });
 }
 

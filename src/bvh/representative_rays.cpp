@@ -72,14 +72,7 @@ void for_each_patch(const TriangleSource& source, Visit&& visit) {
     for (uint32_t i = 0; i < mesh.triangle_count; ++i) {
       Vec3f corner[3];
       mesh.corners_of(i, corner);
-      bool is_in_range = true;
-      for (const Vec3f& vertex : corner) {
-        for (int axis = 0; axis < 3; ++axis) {
-          // Written so that NaN is out of range.
-          if (!(std::fabs(vertex[axis]) <= KIWAMI_MAX_COORDINATE)) is_in_range = false;
-        }
-      }
-      if (!is_in_range) continue;
+      if (!can_be_hit(corner)) continue;
       Patch patch = {{widen(corner[0]), widen(corner[1]), widen(corner[2])}, {}};
       patch.normal = cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]);
       if (length(patch.normal) > 0.0) visit(patch);

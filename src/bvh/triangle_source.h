@@ -2,12 +2,26 @@
 // The triangles of a scene as the stages below the scene see them: views of the meshes' buffers.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
+#include "core/error.h"
 #include "math/bounds.h"
 
 namespace kiwami {
+
+/// Whether a triangle with these corners is one that rays can meet: none of them may be NaN,
+/// infinite or beyond KIWAMI_MAX_COORDINATE.
+inline bool can_be_hit(const Vec3f corner[3]) {
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      // A comparison with NaN is false, so NaN is out of range as well.
+      if (!(std::fabs(corner[k][axis]) <= KIWAMI_MAX_COORDINATE)) return false;
+    }
+  }
+  return true;
+}
 
 /// One mesh. The buffers may lie at any address; no byte beyond the last element is read.
 struct TriangleMeshView {
@@ -37,6 +51,29 @@ struct TriangleMeshView {
   void corners_of(uint32_t primitive, Vec3f corner[3]) const {
     uint32_t index[3];
     indices_of(primitive, index);
+    read_vertices(index, corner);
+  }
+
+  /// For indices that may have changed since they were checked: throws Error(INVALID_ARGUMENT) for
+  /// one at or beyond the vertex count.
+  void checked_indices_of(uint32_t primitive, uint32_t index[3]) const {
+    indices_of(primitive, index);
+    for (uint32_t k = 0; k < 3; ++k) {
+      if (index[k] < vertex_count) continue;
+      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                  "index %u of triangle %u of geometry %u is %u, expected less than its vertex "
+                  "count, which is %zu",
+                  k, primitive, geometry_id, index[k], vertex_count);
+    }
+  }
+  void checked_corners_of(uint32_t primitive, Vec3f corner[3]) const {
+    uint32_t index[3];
+    checked_indices_of(primitive, index);
+    read_vertices(index, corner);
+  }
+
+ private:
+  void read_vertices(const uint32_t index[3], Vec3f corner[3]) const {
     for (int k = 0; k < 3; ++k) {
       std::memcpy(&corner[k], vertices + index[k] * vertex_stride, sizeof(Vec3f));
     }

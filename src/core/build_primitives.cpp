@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/build_primitives.h"
 
-#include <cmath>
-
-#include "core/error.h"
+#include <numeric>
 
 namespace kiwami {
 
@@ -12,36 +10,13 @@ namespace {
 /// Triangles that one task looks at.
 constexpr size_t kBlockSize = 8192;
 
-bool is_in_range(const Vec3f& vertex) {
-  // A comparison with NaN is false, so NaN is out of range as well.
-  return std::fabs(vertex.x) <= KIWAMI_MAX_COORDINATE &&
-         std::fabs(vertex.y) <= KIWAMI_MAX_COORDINATE &&
-         std::fabs(vertex.z) <= KIWAMI_MAX_COORDINATE;
-}
-
-/// Throws unless every index of a triangle names a vertex: only then may its corners be read.
-void check_indices(const TriangleMeshView& mesh, uint32_t primitive) {
-  uint32_t corner[3];
-  mesh.indices_of(primitive, corner);
-  for (uint32_t k = 0; k < 3; ++k) {
-    if (corner[k] < mesh.vertex_count) continue;
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
-                "index %u of triangle %u of geometry %u is %u, expected less than its vertex "
-                "count, which is %zu",
-                k, primitive, mesh.geometry_id, corner[k], mesh.vertex_count);
-  }
-}
-
 /// The box of a triangle; false when it can never be hit.
 bool make_primitive(const TriangleMeshView& mesh, uint32_t primitive, BuildPrimitive& made) {
-  check_indices(mesh, primitive);
   Vec3f corner[3];
-  mesh.corners_of(primitive, corner);
+  mesh.checked_corners_of(primitive, corner);
+  if (!can_be_hit(corner)) return false;
   Bounds bounds = Bounds::empty();
-  for (const Vec3f& vertex : corner) {
-    if (!is_in_range(vertex)) return false;
-    bounds.extend(vertex);
-  }
+  for (const Vec3f& vertex : corner) bounds.extend(vertex);
   made = {bounds.lower, mesh.first_id + primitive, bounds.upper, 0};
   return true;
 }
@@ -79,6 +54,32 @@ Array<BuildPrimitive> collect_build_primitives(const TriangleSource& source, siz
   }
   primitives.shrink(kept);
   return primitives;
+}
+
+size_t count_hittable(const TriangleSource& source, size_t count, Memory& memory,
+                      const Parallel& parallel) {
+  Array<size_t> counts(memory, (count + kBlockSize - 1) / kBlockSize);
+  parallel.for_blocks(count, kBlockSize, [&](size_t begin, size_t end) {
+    size_t hittable = 0;
+    for (size_t id = begin; id < end; ++id) {
+      Vec3f corner[3];
+      source.corners_of(static_cast<uint32_t>(id), corner);
+      if (can_be_hit(corner)) ++hittable;
+    }
+    counts[begin / kBlockSize] = hittable;
+  });
+  return std::accumulate(counts.begin(), counts.end(), size_t{0});
+}
+
+Array<uint32_t> missing_ids(const Array<BuildPrimitive>& primitives, size_t count, Memory& memory) {
+  Array<uint32_t> missing(memory, count - primitives.size());
+  size_t found = 0;
+  uint32_t id = 0;
+  for (size_t i = 0; found < missing.size(); ++i, ++id) {
+    const uint32_t next = i < primitives.size() ? primitives[i].id : static_cast<uint32_t>(count);
+    for (; id < next; ++id) missing[found++] = id;
+  }
+  return missing;
 }
 
 }  // namespace kiwami

@@ -15,4 +15,11 @@ namespace kiwami {
 Array<BuildPrimitive> collect_build_primitives(const TriangleSource& source, size_t count,
                                                Memory& memory, const Parallel& parallel);
 
+/// How many of the triangles can be hit.
+size_t count_hittable(const TriangleSource& source, size_t count, Memory& memory,
+                      const Parallel& parallel);
+
+/// The ids below count that none of the primitives, which stand by rising id, has.
+Array<uint32_t> missing_ids(const Array<BuildPrimitive>& primitives, size_t count, Memory& memory);
+
 }  // namespace kiwami

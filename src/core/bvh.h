@@ -91,15 +91,16 @@ class Bvh : public Object<Bvh> {
   const Array<Bounds>& boxes() const { return boxes_; }
 
  private:
-  Array<BuildPrimitive> collect() const;
+  Array<BuildPrimitive> collect(const TriangleSource& source) const;
   void build(Array<BuildPrimitive> primitives, const BvhPlan& plan);
-  void note_skipped(const Array<BuildPrimitive>& primitives);
-  Array<Bounds> boxes_by_id() const;
+  Array<Bounds> boxes_by_id(const TriangleSource& source) const;
   void describe(uint32_t width, uint32_t leaf_width);
+  void take_vertices();
 
   Reference<Device> device_;
   Reference<CommittedScene> scene_;
   Reference<TriangleMesh> mesh_;
+  Reference<BufferCopy> mesh_vertices_;  ///< what mesh_view_ reads of copied vertices
   TriangleMeshView mesh_view_{};
   Array<Bounds> boxes_;          ///< by primitive id, of a tree over boxes
   size_t numbered_count_;        ///< primitives, skipped ones included

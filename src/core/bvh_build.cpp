@@ -65,14 +65,14 @@ Bvh::Bvh(Device& device, const BvhPlan& plan) : device_(device) {
   Memory& memory = device.memory();
   if (plan.mesh) {
     mesh_ = Reference<TriangleMesh>(*plan.mesh);
-    mesh_view_ = plan.mesh->view(0, 0);
+    take_vertices();
     numbered_count_ = plan.mesh->triangle_count();
   } else {
     boxes_ = read_boxes(plan.boxes, memory, device.parallel());
     numbered_count_ = plan.boxes.count;
   }
-  Array<BuildPrimitive> primitives = collect();
-  note_skipped(primitives);
+  Array<BuildPrimitive> primitives = collect(source());
+  skipped_ids_ = missing_ids(primitives, numbered_count_, memory);
   build(std::move(primitives), plan);
   info_.skipped_count = skipped_ids_.size();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -81,21 +81,17 @@ Bvh::Bvh(Device& device, const BvhPlan& plan) : device_(device) {
   if (plan.parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
 }
 
-Array<BuildPrimitive> Bvh::collect() const {
-  Memory& memory = device_->memory();
-  if (is_over_boxes()) return primitives_of(boxes_, memory);
-  return collect_build_primitives(source(), numbered_count_, memory, device_->parallel());
+/// Those that the mesh has now.
+void Bvh::take_vertices() {
+  mesh_view_ = mesh_->view(0, 0);
+  BufferCopy* const copy = mesh_->replaceable_buffer();
+  mesh_vertices_ = copy ? Reference<BufferCopy>(*copy) : Reference<BufferCopy>();
 }
 
-void Bvh::note_skipped(const Array<BuildPrimitive>& primitives) {
-  skipped_ids_ = Array<uint32_t>(device_->memory(), numbered_count_ - primitives.size());
-  size_t count = 0;
-  uint32_t id = 0;
-  for (const BuildPrimitive& primitive : primitives) {
-    for (; id < primitive.id; ++id) skipped_ids_[count++] = id;
-    ++id;
-  }
-  for (; id < numbered_count_; ++id) skipped_ids_[count++] = id;
+Array<BuildPrimitive> Bvh::collect(const TriangleSource& source) const {
+  Memory& memory = device_->memory();
+  if (is_over_boxes()) return primitives_of(boxes_, memory);
+  return collect_build_primitives(source, numbered_count_, memory, device_->parallel());
 }
 
 void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
@@ -125,7 +121,7 @@ void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
   const BinaryBvh binary =
       build_binary_bvh(std::move(primitives), source(), parameters, width, memory, parallel);
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
-    primitives = collect();
+    primitives = collect(source());
     const TriangleSource triangles = source();
     verify_binary_bvh(binary, primitives.data(), primitives.size(),
                       binary_leaf_size_of(parameters, width), memory, &triangles);
@@ -142,10 +138,10 @@ void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
 }
 
 /// Those that no leaf owns are empty.
-Array<Bounds> Bvh::boxes_by_id() const {
+Array<Bounds> Bvh::boxes_by_id(const TriangleSource& source) const {
   Array<Bounds> boxes(device_->memory(), numbered_count_);
   std::fill(boxes.begin(), boxes.end(), Bounds::empty());
-  for (const BuildPrimitive& primitive : collect()) boxes[primitive.id] = primitive.bounds();
+  for (const BuildPrimitive& primitive : collect(source)) boxes[primitive.id] = primitive.bounds();
   for (const uint32_t id : skipped_ids_) boxes[id] = Bounds::empty();
   return boxes;
 }
@@ -160,8 +156,9 @@ void Bvh::refit(const BoxArray& boxes) {
                 boxes.count, boxes_.size());
   }
   Memory& memory = device_->memory();
+  const TriangleMeshView mesh = mesh_.get() ? mesh_->view(0, 0) : TriangleMeshView{};
   Array<Bounds> moved =
-      is_over_boxes() ? read_boxes(boxes, memory, device_->parallel()) : boxes_by_id();
+      is_over_boxes() ? read_boxes(boxes, memory, device_->parallel()) : boxes_by_id({&mesh, 1});
   for (const uint32_t id : tree_.primitive_ids) {
     if (!moved[id].is_empty()) continue;
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
@@ -170,12 +167,16 @@ void Bvh::refit(const BoxArray& boxes) {
                 id);
   }
   kiwami::refit(tree_.nodes, tree_.primitive_ids, moved, device_->parallel());
-  if (is_over_boxes()) boxes_ = std::move(moved);
+  if (is_over_boxes()) {
+    boxes_ = std::move(moved);
+  } else {
+    take_vertices();
+  }
 }
 
 void Bvh::validate() const {
   if (scene_.get()) scene_->validate();
-  verify_flat_tree({nodes().data(), nodes().size()}, tree_.primitive_ids, boxes_by_id(),
+  verify_flat_tree({nodes().data(), nodes().size()}, tree_.primitive_ids, boxes_by_id(source()),
                    info_.width, info_.leaf_width, device_->memory());
 }
 

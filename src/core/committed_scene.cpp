@@ -19,6 +19,11 @@ namespace {
 /// Running ids are 32 bits wide, and their highest value names nothing.
 constexpr uint64_t kMaxTriangleCount = 0xFFFFFFFEu;
 
+/// How much of a build is done after each of its stages, of the default ones.
+constexpr double kCollected = 0.05, kBuilt = 0.6, kMadeWide = 0.9;
+/// Of a stage; a guess.
+constexpr size_t kTrianglesPerTask = 1024;
+
 uint32_t width_of(const SceneParameters& parameters, const Device& device) {
   const uint32_t width = parameters.whole(KIWAMI_PARAMETER_BVH_WIDTH);
   return width != 0 ? width : default_width_of(device.isa());
@@ -33,16 +38,26 @@ double ratio(uint64_t part, uint64_t whole) {
 CommittedScene::GeometryReferences::GeometryReferences(Memory& memory,
                                                        const AttachedGeometry* geometries,
                                                        size_t count)
-    : geometries_(memory, count) {
+    : geometries_(memory, count), buffers_(memory, count) {
   for (size_t i = 0; i < count; ++i) {
     geometries_[i] = geometries[i].geometry;
     geometries_[i]->retain();
+    buffers_[i] = geometries_[i]->replaceable_buffer();
+    if (buffers_[i]) buffers_[i]->retain();
   }
   std::sort(geometries_.begin(), geometries_.end(), std::less<Geometry*>());
 }
 
 CommittedScene::GeometryReferences::~GeometryReferences() {
+  for (BufferCopy* buffer : buffers_) {
+    if (buffer) buffer->release();
+  }
   for (Geometry* geometry : geometries_) geometry->release();
+}
+
+void CommittedScene::GeometryReferences::swap(GeometryReferences& other) noexcept {
+  std::swap(geometries_, other.geometries_);
+  std::swap(buffers_, other.buffers_);
 }
 
 size_t CommittedScene::GeometryReferences::copied_bytes() const {
@@ -57,7 +72,7 @@ size_t CommittedScene::GeometryReferences::copied_bytes() const {
 
 CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
                                const SceneParameters& parameters,
-                               std::span<const RepresentativeRay> rays)
+                               std::span<const RepresentativeRay> rays, const Parallel& parallel)
     : device_(device),
       memory_(device.memory().allocator()),
       references_(memory_, geometries, count) {
@@ -65,7 +80,7 @@ CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometrie
   number_triangles(geometries, count);
   const uint32_t width = width_of(parameters, device);
   tree_.width = width;
-  build(parameters, rays);
+  build(parameters, rays, parallel);
   kernels_ = kernels_of(device.isa(), width, tree_.leaf_layout);
   describe();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -98,6 +113,7 @@ void CommittedScene::destroy(CommittedScene* scene) noexcept {
 void CommittedScene::number_triangles(const AttachedGeometry* geometries, size_t count) {
   mesh_views_ = Array<TriangleMeshView>(memory_, count);
   ranges_ = Array<GeometryRange>(memory_, count);
+  view_.has_masks = 0;
   uint64_t next_id = 0;
   size_t used = 0;
   for (size_t i = 0; i < count; ++i) {
@@ -123,11 +139,12 @@ void CommittedScene::number_triangles(const AttachedGeometry* geometries, size_t
 }
 
 BinaryBvh CommittedScene::build_binary(Array<BuildPrimitive> primitives,
-                                       const SceneParameters& parameters) {
-  BinaryBvh binary = build_binary_bvh(std::move(primitives), source(), parameters, tree_.width,
-                                      memory_, parallel());
+                                       const SceneParameters& parameters,
+                                       const Parallel& parallel) {
+  BinaryBvh binary =
+      build_binary_bvh(std::move(primitives), source(), parameters, tree_.width, memory_, parallel);
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
-    primitives = collect_build_primitives(source(), numbered_count_, memory_, parallel());
+    primitives = collect_build_primitives(source(), numbered_count_, memory_, parallel);
     const TriangleSource triangles = source();
     verify_binary_bvh(binary, primitives.data(), primitives.size(),
                       binary_leaf_size_of(parameters, tree_.width), memory_, &triangles);
@@ -136,7 +153,7 @@ BinaryBvh CommittedScene::build_binary(Array<BuildPrimitive> primitives,
 }
 
 void CommittedScene::build(const SceneParameters& parameters,
-                           std::span<const RepresentativeRay> rays) {
+                           std::span<const RepresentativeRay> rays, const Parallel& parallel) {
   Array<RepresentativeRay> sampled;
   if (rays.empty()) {
     sampled = sample_rays_for(parameters, source(), memory_);
@@ -144,23 +161,33 @@ void CommittedScene::build(const SceneParameters& parameters,
   }
   WideTreeConfig config = wide_tree_config(parameters, tree_.width);
   config.rays = rays;
+  node_cost_ = config.node_cost;
+  leaf_cost_ = config.leaf_cost;
+  validates_build_ = parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0;
+  const size_t expected_tasks = numbered_count_ / kTrianglesPerTask;
+  parallel.begin_stage(kCollected, expected_tasks);
   Array<BuildPrimitive> primitives =
-      collect_build_primitives(source(), numbered_count_, memory_, parallel());
+      collect_build_primitives(source(), numbered_count_, memory_, parallel);
   triangle_count_ = primitives.size();
+  skipped_ids_ = missing_ids(primitives, numbered_count_, memory_);
+  parallel.begin_stage(kBuilt, expected_tasks);
   Bounds bounds;
   {
     WideDraft draft;
     if (builds_wide_tree(parameters)) {
-      draft = build_wide_draft(std::move(primitives), config, parameters, memory_, parallel());
+      draft = build_wide_draft(std::move(primitives), config, parameters, memory_, parallel);
+      parallel.begin_stage(kMadeWide, expected_tasks);
     } else {
-      draft = contract_to_draft(build_binary(std::move(primitives), parameters), source(), config,
-                                memory_, parallel());
+      BinaryBvh binary = build_binary(std::move(primitives), parameters, parallel);
+      parallel.begin_stage(kMadeWide, expected_tasks);
+      draft = contract_to_draft(std::move(binary), source(), config, memory_, parallel);
     }
     bounds = draft.boxes.empty() ? Bounds::empty() : draft.boxes[0];
-    tree_ = pack_wide_tree(draft, source(), config, memory_, parallel());
+    tree_ = pack_wide_tree(draft, source(), config, memory_, parallel);
   }
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
-  optimize_wide_tree(tree_, source(), rays, parameters, memory_, parallel());
+  parallel.begin_stage(1.0, numbered_count_ / kTrianglesPerTask);
+  optimize_wide_tree(tree_, source(), rays, parameters, memory_, parallel);
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) validate();
   show_tree(bounds);
 }

@@ -26,16 +26,32 @@ struct SavedTree {
 };
 
 /// What a commit makes and the kernels read: the tree and the tables around it. Holds the
-/// geometries that it was built from, so that it outlives their detachment. Never changes.
+/// geometries that it was built from, so that it outlives their detachment, and their vertices, so
+/// that it outlives these. Never changes while anybody holds it but the scene that makes it.
 class CommittedScene : public Object<CommittedScene> {
  public:
   /// Builds over count geometries by rising geometry_id. Where a method goes by rays, it goes by
-  /// these, or by sampled ones where there are none. Throws Error.
+  /// these, or by sampled ones where there are none. Runs and reports its tasks on parallel. Throws
+  /// Error.
   CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
-                 const SceneParameters& parameters, std::span<const RepresentativeRay> rays);
+                 const SceneParameters& parameters, std::span<const RepresentativeRay> rays,
+                 const Parallel& parallel);
   /// Of count geometries, whose tree was saved. Throws Error.
   CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count, SavedTree saved);
+  /// A copy, to be refitted.
+  CommittedScene(const CommittedScene& other, const Parallel& parallel);
   static void destroy(CommittedScene* scene) noexcept;
+
+  /// Whether a refit can give the tree to these geometries, by rising geometry_id: it has a place
+  /// for each of their triangles that can be hit. Throws Error(INVALID_ARGUMENT) for an index at or
+  /// beyond its mesh's vertex count.
+  bool fits(const AttachedGeometry* geometries, size_t count) const;
+
+  /// Moves the tree to where these geometries, which it fits, have their vertices now. Nobody else
+  /// may hold it. False: the tree has no room for what has become of the triangles. Then, as after
+  /// an exception, it is of no use until a refit succeeds. refit_count is that of its info.
+  bool refit(const AttachedGeometry* geometries, size_t count, uint64_t refit_count,
+             const Parallel& parallel);
 
   /// For what only works on it, and is gone before it.
   Memory& memory() const { return device_->memory(); }
@@ -57,26 +73,31 @@ class CommittedScene : public Object<CommittedScene> {
   void validate() const;
 
  private:
-  /// Counted references to the geometries.
+  /// Counted references to the geometries and to the vertices that they have at the moment.
   class GeometryReferences {
    public:
     GeometryReferences(Memory& memory, const AttachedGeometry* geometries, size_t count);
     ~GeometryReferences();
     GeometryReferences(const GeometryReferences&) = delete;
     GeometryReferences& operator=(const GeometryReferences&) = delete;
+    void swap(GeometryReferences& other) noexcept;
 
     /// The bytes of their copied buffers, each geometry counted once however often it is attached.
     size_t copied_bytes() const;
 
    private:
     Array<Geometry*> geometries_;  ///< sorted by address
+    Array<BufferCopy*> buffers_;   ///< nullptr: the geometry has none
   };
 
   void number_triangles(const AttachedGeometry* geometries, size_t count);
-  BinaryBvh build_binary(Array<BuildPrimitive> primitives, const SceneParameters& parameters);
-  void build(const SceneParameters& parameters, std::span<const RepresentativeRay> rays);
+  BinaryBvh build_binary(Array<BuildPrimitive> primitives, const SceneParameters& parameters,
+                         const Parallel& parallel);
+  void build(const SceneParameters& parameters, std::span<const RepresentativeRay> rays,
+             const Parallel& parallel);
   void show_tree(const Bounds& bounds);
   void describe();
+  bool can_skipped_be_hit(const AttachedGeometry* geometries, size_t count) const;
 
   Reference<Device> device_;
   Reference<FileImage> image_;  ///< of a scene that was loaded
@@ -90,6 +111,9 @@ class CommittedScene : public Object<CommittedScene> {
   SceneView view_{};
   size_t numbered_count_ = 0;  ///< triangles of all meshes, skipped ones included
   size_t triangle_count_ = 0;
+  Array<uint32_t> skipped_ids_;  ///< of triangles that had no place in the tree when it was built
+  double node_cost_ = 0.0, leaf_cost_ = 0.0;
+  bool validates_build_ = false;
   kiwami_scene_info info_{};
 };
 

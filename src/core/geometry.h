@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/buffer_copy.h"
 #include "core/device.h"
 #include "core/memory.h"
 #include "core/object.h"
@@ -20,8 +21,12 @@ class Geometry : public Object<Geometry> {
   GeometryKind kind() const { return kind_; }
   /// A ray meets the geometry only where (ray.mask & mask()) != 0.
   uint32_t mask() const { return mask_; }
+  void set_mask(uint32_t mask) { mask_ = mask; }
   /// The bytes of copied buffers and of those in a file; 0 for shared ones.
   virtual size_t copied_bytes() const = 0;
+  /// What the geometry is to hold other contents of one day, and what is committed is to keep;
+  /// nullptr: nothing.
+  virtual BufferCopy* replaceable_buffer() const { return nullptr; }
 
  protected:
   Geometry(Device& device, GeometryKind kind, uint32_t mask)

@@ -80,6 +80,9 @@ class Array {
     if (memory_ && data_) memory_->deallocate(data_, capacity_bytes(), kAlignment);
   }
 
+  /// False for memory of others.
+  bool owns_memory() const { return memory_ != nullptr; }
+
   T* data() { return data_; }
   const T* data() const { return data_; }
   size_t size() const { return size_; }

@@ -41,6 +41,10 @@ class Object {
 
   void retain() noexcept { references_.fetch_add(1, std::memory_order_relaxed); }
 
+  /// Whether there are several references. Where there is one, it is that of the caller, and what
+  /// others did with the object has happened before.
+  bool is_shared() const noexcept { return references_.load(std::memory_order_acquire) != 1; }
+
   void release() noexcept {
     // Acquire-release: whatever other threads did with the object has happened before its end.
     if (references_.fetch_sub(1, std::memory_order_acq_rel) == 1) T::destroy(static_cast<T*>(this));

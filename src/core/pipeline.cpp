@@ -329,6 +329,7 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
   BinaryBvh bvh = run_builder(std::move(primitives), source, parameters, width, memory, parallel);
   for (const uint32_t method : parameters.optimizers()) {
     const Optimizer& optimizer = *find_optimizer(method);
+    parallel.check_cancelled();
     if (optimizer.on_binary) optimizer.on_binary(bvh, {source, {}, costs, memory, parallel});
   }
   // Builders that know nothing of blocks leave one primitive a leaf.
@@ -353,6 +354,7 @@ void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
   const SahCosts costs = costs_of(parameters, tree.width);
   for (const uint32_t method : parameters.optimizers()) {
     const Optimizer& optimizer = *find_optimizer(method);
+    parallel.check_cancelled();
     if (optimizer.on_wide) optimizer.on_wide(tree, {source, rays, costs, memory, parallel});
   }
 }

@@ -5,10 +5,14 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "parallel/progress.h"
 
 namespace kiwami {
 
 namespace {
+
+/// How much of a commit is done after a refit, which may turn out to need a build.
+constexpr double kRefitted = 0.9;
 
 void log_skipped(const Device& device, const kiwami_scene_info& info) {
   if (info.skipped_count == 0) return;
@@ -32,42 +36,59 @@ void Scene::destroy(Scene* scene) noexcept {
 }
 
 Scene::~Scene() {
-  for (size_t id = 0; id < geometries_.size(); ++id) {
-    if (geometries_[id]) geometries_[id]->release();
+  for (size_t id = 0; id < slots_.size(); ++id) {
+    if (slots_[id].geometry) slots_[id].geometry->release();
   }
 }
 
 uint32_t Scene::attach(Geometry& geometry) {
-  while (lowest_free_ < geometries_.size() && geometries_[lowest_free_]) ++lowest_free_;
-  if (lowest_free_ == geometries_.size()) geometries_.push_back(nullptr);
-  geometries_[lowest_free_] = &geometry;
+  while (lowest_free_ < slots_.size() && slots_[lowest_free_].geometry) ++lowest_free_;
+  if (lowest_free_ == slots_.size()) slots_.push_back({nullptr, true});
+  slots_[lowest_free_] = {&geometry, true};
   geometry.retain();
   return lowest_free_++;
 }
 
-void Scene::detach(uint32_t geometry_id) {
-  if (geometry_id >= geometries_.size() || !geometries_[geometry_id]) {
+Scene::Slot& Scene::slot(uint32_t geometry_id) {
+  if (geometry_id >= slots_.size() || !slots_[geometry_id].geometry) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "geometry_id is %u, expected the number of an attached geometry", geometry_id);
   }
-  geometries_[geometry_id]->release();
-  geometries_[geometry_id] = nullptr;
+  return slots_[geometry_id];
+}
+
+void Scene::detach(uint32_t geometry_id) {
+  Slot& left = slot(geometry_id);
+  left.geometry->release();
+  left.geometry = nullptr;
   lowest_free_ = std::min(lowest_free_, geometry_id);
 }
 
+void Scene::replace(uint32_t geometry_id, Geometry& geometry) {
+  Slot& place = slot(geometry_id);
+  geometry.retain();
+  place.geometry->release();
+  place.geometry = &geometry;
+}
+
+void Scene::enable(uint32_t geometry_id, bool is_enabled) {
+  slot(geometry_id).is_enabled = is_enabled;
+}
+
 Array<AttachedGeometry> Scene::attached_geometries() const {
-  Array<AttachedGeometry> attached(device_->memory(), geometries_.size());
+  Array<AttachedGeometry> attached(device_->memory(), slots_.size());
   size_t count = 0;
-  for (size_t id = 0; id < geometries_.size(); ++id) {
-    if (geometries_[id]) attached[count++] = {geometries_[id], static_cast<uint32_t>(id)};
+  for (size_t id = 0; id < slots_.size(); ++id) {
+    if (!slots_[id].geometry || !slots_[id].is_enabled) continue;
+    attached[count++] = {slots_[id].geometry, static_cast<uint32_t>(id)};
   }
   attached.shrink(count);
   return attached;
 }
 
 void Scene::attach_as(uint32_t geometry_id, Geometry& geometry) {
-  while (geometries_.size() <= geometry_id) geometries_.push_back(nullptr);
-  geometries_[geometry_id] = &geometry;
+  while (slots_.size() <= geometry_id) slots_.push_back({nullptr, true});
+  slots_[geometry_id] = {&geometry, true};
   geometry.retain();
 }
 
@@ -75,14 +96,65 @@ void Scene::restore(SavedTree saved) {
   const Array<AttachedGeometry> attached = attached_geometries();
   committed_ = Reference<CommittedScene>::adopt(make_object<CommittedScene>(
       device_->memory(), *device_, attached.data(), attached.size(), std::move(saved)));
+  retired_ = {};
+}
+
+template <typename Run>
+void Scene::watch(Run&& run) {
+  if (!progress_) {
+    run(device_->parallel());
+    return;
+  }
+  Progress progress(progress_, progress_user_);
+  const Parallel parallel(device_->parallel(), progress);
+  run(parallel);
 }
 
 void Scene::commit() {
+  watch([this](const Parallel& parallel) { build(parallel); });
+}
+
+void Scene::build(const Parallel& parallel) {
   Memory& memory = device_->memory();
   const Array<AttachedGeometry> attached = attached_geometries();
-  committed_ = Reference<CommittedScene>::adopt(
-      make_object<CommittedScene>(memory, *device_, attached.data(), attached.size(), parameters_,
-                                  std::span<const RepresentativeRay>(rays_.data(), rays_.size())));
+  Reference<CommittedScene> built = Reference<CommittedScene>::adopt(make_object<CommittedScene>(
+      memory, *device_, attached.data(), attached.size(), parameters_,
+      std::span<const RepresentativeRay>(rays_.data(), rays_.size()), parallel));
+  parallel.finish();
+  committed_ = std::move(built);
+  retired_ = {};
+  log_skipped(*device_, committed_->info());
+}
+
+/// A structure with the committed tree that nobody else holds.
+Reference<CommittedScene> Scene::take_refittable(const Parallel& parallel) {
+  Reference<CommittedScene> taken;
+  std::swap(taken, retired_);
+  if (taken.get() && !taken->is_shared()) return taken;
+  return Reference<CommittedScene>::adopt(
+      make_object<CommittedScene>(device_->memory(), *committed_, parallel));
+}
+
+void Scene::refit() {
+  watch([this](const Parallel& parallel) { refit(parallel); });
+}
+
+void Scene::refit(const Parallel& parallel) {
+  const Array<AttachedGeometry> attached = attached_geometries();
+  if (!committed_.get() || !committed_->fits(attached.data(), attached.size())) {
+    build(parallel);
+    return;
+  }
+  parallel.begin_stage(kRefitted, 0);
+  const Reference<CommittedScene> moved = take_refittable(parallel);
+  const uint64_t refit_count = committed_->info().refit_count + 1;
+  if (!moved->refit(attached.data(), attached.size(), refit_count, parallel)) {
+    build(parallel);
+    return;
+  }
+  parallel.finish();
+  retired_ = committed_;
+  committed_ = moved;
   log_skipped(*device_, committed_->info());
 }
 

@@ -38,10 +38,8 @@ void check_stride(const char* name, uint64_t stride, size_t element_size) {
   }
 }
 
-Array<unsigned char> packed_copy(const unsigned char* source, size_t stride, size_t count,
-                                 size_t element_size, Device& device) {
-  Array<unsigned char> packed(device.memory(), count * element_size);
-  unsigned char* target = packed.data();
+void pack(const unsigned char* source, size_t stride, size_t count, size_t element_size,
+          unsigned char* target, const Device& device) {
   device.parallel().for_blocks(count, kBlockSize, [&](size_t begin, size_t end) {
     if (stride == element_size) {
       std::memcpy(target + begin * element_size, source + begin * element_size,
@@ -52,6 +50,12 @@ Array<unsigned char> packed_copy(const unsigned char* source, size_t stride, siz
       std::memcpy(target + i * element_size, source + i * stride, element_size);
     }
   });
+}
+
+Array<unsigned char> packed_copy(const unsigned char* source, size_t stride, size_t count,
+                                 size_t element_size, Device& device) {
+  Array<unsigned char> packed(device.memory(), count * element_size);
+  pack(source, stride, count, element_size, packed.data(), device);
   return packed;
 }
 

@@ -19,6 +19,10 @@ void check_extent(const char* name, const void* data, uint64_t offset, uint64_t 
 void check_stride(const char* name, uint64_t stride, size_t element_size);
 
 /// Copies count elements, stride bytes apart, close together, on the device's threads.
+void pack(const unsigned char* source, size_t stride, size_t count, size_t element_size,
+          unsigned char* target, const Device& device);
+
+/// The same, into an array of just that size.
 Array<unsigned char> packed_copy(const unsigned char* source, size_t stride, size_t count,
                                  size_t element_size, Device& device);
 

@@ -92,15 +92,17 @@ TriangleMesh* TriangleMesh::create(Device& device, const kiwami_triangle_mesh_de
 
 TriangleMesh::TriangleMesh(Device& device, const kiwami_triangle_mesh_desc& desc)
     : Geometry(device, GeometryKind::kTriangleMesh, desc.mask), view_(view_of(desc)) {
-  if ((desc.flags & KIWAMI_MESH_SHARE_BUFFERS) == 0) copy_buffers();
+  shares_buffers_ = (desc.flags & KIWAMI_MESH_SHARE_BUFFERS) != 0;
+  if (!shares_buffers_) copy_buffers();
   check_indices();
 }
 
 TriangleMesh::TriangleMesh(Device& device, FileImage& image, const TriangleMeshView& view,
                            bool is_trusted)
     : Geometry(device, GeometryKind::kTriangleMesh, view.mask), image_(image), view_(view) {
-  vertices_ = Array<unsigned char>::borrow(const_cast<unsigned char*>(view.vertices),
-                                           view.vertex_count * kElementSize);
+  vertices_ = Reference<BufferCopy>::adopt(BufferCopy::create(
+      device, Array<unsigned char>::borrow(const_cast<unsigned char*>(view.vertices),
+                                           view.vertex_count * kElementSize)));
   if (view.indices) {
     indices_ = Array<unsigned char>::borrow(const_cast<unsigned char*>(view.indices),
                                             view.triangle_count * kElementSize);
@@ -109,9 +111,10 @@ TriangleMesh::TriangleMesh(Device& device, FileImage& image, const TriangleMeshV
 }
 
 void TriangleMesh::copy_buffers() {
-  vertices_ =
-      packed_copy(view_.vertices, view_.vertex_stride, view_.vertex_count, kElementSize, device());
-  view_.vertices = vertices_.data();
+  vertices_ = Reference<BufferCopy>::adopt(
+      BufferCopy::create(device(), packed_copy(view_.vertices, view_.vertex_stride,
+                                               view_.vertex_count, kElementSize, device())));
+  view_.vertices = vertices_->bytes().data();
   view_.vertex_stride = kElementSize;
   if (!view_.indices) return;
   indices_ =
@@ -119,6 +122,41 @@ void TriangleMesh::copy_buffers() {
   // A mesh of no triangles keeps the caller's pointer, which is never read.
   if (view_.triangle_count != 0) view_.indices = indices_.data();
   view_.index_stride = kElementSize;
+}
+
+size_t TriangleMesh::copied_bytes() const {
+  size_t bytes = indices_.bytes();
+  if (vertices_.get()) bytes += vertices_->bytes().bytes();
+  if (spare_vertices_.get()) bytes += spare_vertices_->bytes().bytes();
+  return bytes;
+}
+
+void TriangleMesh::update_vertices(const void* vertices, uint64_t offset, uint64_t stride) {
+  check_stride("vertex_stride", stride, kElementSize);
+  const size_t step = stride != 0 ? static_cast<size_t>(stride) : kElementSize;
+  if (view_.vertex_count == 0) return;
+  if (!vertices) {
+    if (shares_buffers_) return;
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "vertices is NULL for a mesh of %zu copied vertices, expected the vertices",
+                view_.vertex_count);
+  }
+  check_extent("vertices", vertices, offset, step, view_.vertex_count, kElementSize);
+  const unsigned char* first = static_cast<const unsigned char*>(vertices) + offset;
+  if (shares_buffers_) {
+    view_.vertices = first;
+    view_.vertex_stride = step;
+    return;
+  }
+  if (!spare_vertices_.get() || spare_vertices_->is_shared() ||
+      !spare_vertices_->bytes().owns_memory()) {
+    spare_vertices_ = Reference<BufferCopy>::adopt(BufferCopy::create(
+        device(), Array<unsigned char>(device().memory(), view_.vertex_count * kElementSize)));
+  }
+  pack(first, step, view_.vertex_count, kElementSize, spare_vertices_->bytes().data(), device());
+  std::swap(vertices_, spare_vertices_);
+  view_.vertices = vertices_->bytes().data();
+  view_.vertex_stride = kElementSize;
 }
 
 void TriangleMesh::check_indices() const {

@@ -19,7 +19,13 @@ class TriangleMesh final : public Geometry {
   TriangleMesh(Device& device, FileImage& image, const TriangleMeshView& view, bool is_trusted);
 
   uint32_t triangle_count() const { return view_.triangle_count; }
-  size_t copied_bytes() const override { return vertices_.bytes() + indices_.bytes(); }
+  size_t copied_bytes() const override;
+  BufferCopy* replaceable_buffer() const override { return vertices_.get(); }
+
+  /// Takes other vertices, as many as there are. They are copied; shared ones are read there from
+  /// now on, or, where vertices is nullptr, where they were. Throws Error(INVALID_ARGUMENT,
+  /// OUT_OF_MEMORY or CALLBACK), and then nothing has changed.
+  void update_vertices(const void* vertices, uint64_t offset, uint64_t stride);
 
   /// The mesh as a part of a scene: its running ids begin at first_id.
   TriangleMeshView view(uint32_t first_id, uint32_t geometry_id) const {
@@ -36,9 +42,12 @@ class TriangleMesh final : public Geometry {
   void check_indices() const;
 
   Reference<FileImage> image_;
-  Array<unsigned char> vertices_;
+  // None for shared vertices; those in a file are borrowed. The spare one takes the next vertices
+  // if nobody holds it by then.
+  Reference<BufferCopy> vertices_, spare_vertices_;
   Array<unsigned char> indices_;
   TriangleMeshView view_;
+  bool shares_buffers_ = false;
 };
 
 }  // namespace kiwami

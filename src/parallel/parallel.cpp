@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "math/float_environment.h"
+#include "parallel/progress.h"
 
 #if defined(KIWAMI_TASKING_TBB)
 #include <tbb/blocked_range.h>
@@ -102,13 +103,53 @@ Parallel::Parallel(unsigned thread_count, kiwami_parallel_runner runner, void* r
       runner_user_(runner_user),
       width_(width_of(thread_count, runner, runner_width)) {
 #if defined(KIWAMI_TASKING_TBB)
-  if (!runner_ && width_ > 1) arena_ = std::make_unique<Arena>(width_);
+  if (!runner_ && width_ > 1) arena_ = std::make_shared<Arena>(width_);
 #endif
 }
 
 Parallel::~Parallel() = default;
 
+Parallel::Parallel(const Parallel& other, Progress& progress)
+    : arena_(other.arena_),
+      progress_(&progress),
+      runner_(other.runner_),
+      runner_user_(other.runner_user_),
+      width_(other.width_) {}
+
+void Parallel::begin_stage(double end, size_t expected_tasks) const {
+  if (progress_) progress_->begin_stage(end, expected_tasks);
+}
+
+void Parallel::finish() const {
+  if (progress_) progress_->finish();
+}
+
+void Parallel::check_cancelled() const {
+  if (progress_) progress_->begin_task();
+}
+
 void Parallel::run(size_t count, kiwami_parallel_task task, void* data) const {
+  if (!progress_) {
+    run_unwatched(count, task, data);
+    return;
+  }
+  progress_->begin_task();
+  struct Watched {
+    kiwami_parallel_task task;
+    void* data;
+    Progress* progress;
+  } watched{task, data, progress_};
+  run_unwatched(
+      count,
+      [](void* of, size_t index) {
+        const Watched& loop = *static_cast<const Watched*>(of);
+        loop.progress->begin_task();
+        loop.task(loop.data, index);
+      },
+      &watched);
+}
+
+void Parallel::run_unwatched(size_t count, kiwami_parallel_task task, void* data) const {
   if (count <= 1 || width_ == 1) {
     run_here(count, task, data);
     return;

@@ -10,6 +10,8 @@
 
 namespace kiwami {
 
+class Progress;
+
 /// Runs loops for one device. No algorithm may let its result depend on how the indices are spread
 /// over threads: the loops hand out indices, never thread numbers.
 class Parallel {
@@ -17,12 +19,21 @@ class Parallel {
   /// runner == nullptr: the library's own tasks with thread_count threads (0: one per processor).
   Parallel(unsigned thread_count, kiwami_parallel_runner runner, void* runner_user,
            unsigned runner_width);
+  /// The same threads, for loops that report each of their tasks to progress, which may end them.
+  Parallel(const Parallel& other, Progress& progress);
   ~Parallel();
   Parallel(const Parallel&) = delete;
   Parallel& operator=(const Parallel&) = delete;
 
   /// How many indices run at once, at least 1.
   unsigned width() const { return width_; }
+
+  /// To progress, if there is one: what follows is a stage that ends at this fraction of the whole,
+  /// of about so many tasks; and that all is done.
+  void begin_stage(double end, size_t expected_tasks) const;
+  void finish() const;
+  /// For long work on one thread: throws Error(CANCELLED) where the caller has asked for that.
+  void check_cancelled() const;
 
   /// Calls body(index) for each index below count. The first exception of a body is thrown again
   /// here, after all running bodies have ended; Error(CALLBACK) when the runner failed.
@@ -49,8 +60,11 @@ class Parallel {
  private:
   void run(size_t count, kiwami_parallel_task task, void* data) const;
 
+  void run_unwatched(size_t count, kiwami_parallel_task task, void* data) const;
+
   struct Arena;
-  std::unique_ptr<Arena> arena_;
+  std::shared_ptr<Arena> arena_;
+  Progress* progress_ = nullptr;
   kiwami_parallel_runner runner_;
   void* runner_user_;
   unsigned width_;

@@ -181,7 +181,10 @@ class WideVerifier {
         box.lower[axis] = node.bounds[axis][0][slot];
         box.upper[axis] = node.bounds[axis][1][slot];
       }
-      if (box.is_empty()) fail("the box of slot %d of node %u is empty", slot, index);
+      // A refit leaves the box of an unused slot around triangles that can not be hit any more.
+      if (box.is_empty() && !has_unused_box(node, slot)) {
+        fail("the box of slot %d of node %u is empty", slot, index);
+      }
       if (!visit.box.contains(box)) {
         fail("the box of slot %d of node %u leaves the box that its parent, node %u, stores", slot,
              index, visit.parent);
@@ -221,9 +224,7 @@ class WideVerifier {
     if (has_primitive_[id] && !tree_.view.has_duplicates) {
       fail("%s %u stands in two lanes", primitives_.name(), id);
     }
-    if (has_primitive_[id]) return;
-    has_primitive_[id] = kInParts;
-    ++primitive_count_;
+    if (!has_primitive_[id]) has_primitive_[id] = kSeen;
   }
 
   /// Whether a leaf's box, in the stored frame, holds an interval of an axis.
@@ -237,6 +238,10 @@ class WideVerifier {
     const uint32_t id = id_of(block, lane);
     Vec3f corner[3];
     primitives_.source->corners_of(id, corner);
+    if (!can_be_hit(corner)) {
+      check_vanished(block, lane);
+      return;
+    }
     bool is_part = false;
     for (int vertex = 0; vertex < 3; ++vertex) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -253,6 +258,7 @@ class WideVerifier {
         }
       }
     }
+    count(id);
     if (is_part) {
       parts_.push_back({id, block, box});
     } else {
@@ -269,7 +275,23 @@ class WideVerifier {
         fail("primitive %u in leaf block %u leaves its box on axis %d", id, block, axis);
       }
     }
+    count(id);
     has_primitive_[id] = kWhole;
+  }
+
+  void count(uint32_t id) {
+    if (has_primitive_[id] != kSeen) return;
+    has_primitive_[id] = kInParts;
+    ++primitive_count_;
+  }
+
+  /// A triangle that can not be hit any more stands as NaN where it stood.
+  void check_vanished(uint32_t block, int lane) const {
+    for (int i = 0; has_positions() && i < 9; ++i) {
+      if (std::isnan(leaf(block).position[i / 3][i % 3][lane])) continue;
+      fail("triangle %u in leaf block %u can not be hit, expected NaN in its lane",
+           id_of(block, lane), block);
+    }
   }
 
   /// Of each triangle that no leaf box holds, the boxes around its parts must cover it.
@@ -308,12 +330,18 @@ class WideVerifier {
 
   void check_unused_slot(uint32_t index, int slot) const {
     const WideNode<N>& node = nodes_[index];
-    bool is_unused = node.child[slot].bits == 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      is_unused = is_unused && node.bounds[axis][0][slot] == FLT_MAX &&
-                  node.bounds[axis][1][slot] == -FLT_MAX;
+    if (node.child[slot].bits != 0 || !has_unused_box(node, slot)) {
+      fail("slot %d of node %u has contents but no owner", slot, index);
     }
-    if (!is_unused) fail("slot %d of node %u has contents but no owner", slot, index);
+  }
+
+  static bool has_unused_box(const WideNode<N>& node, int slot) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (node.bounds[axis][0][slot] != FLT_MAX || node.bounds[axis][1][slot] != -FLT_MAX) {
+        return false;
+      }
+    }
+    return true;
   }
 
   void check_unused_lane(uint32_t index, int lane) const {
@@ -347,8 +375,9 @@ class WideVerifier {
   const WideNode<N>* nodes_;
   Array<uint16_t> owned_slots_;
   Array<uint16_t> owned_lanes_;
-  /// Of has_primitive_, for a primitive that stands in some lane.
-  static constexpr uint8_t kInParts = 1, kWhole = 2;
+  /// Of has_primitive_, for a primitive that stands in some lane: as NaN so far, in boxes around
+  /// parts of it, in a box around all of it.
+  static constexpr uint8_t kSeen = 1, kInParts = 2, kWhole = 3;
 
   Array<uint8_t> has_primitive_;
   GrowingArray<Part> parts_;

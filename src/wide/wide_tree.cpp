@@ -20,6 +20,9 @@ namespace {
 /// Nodes (leaf blocks) that one task packs.
 constexpr size_t kPackingBlock = 1024;
 
+/// Bytes that one task copies.
+constexpr size_t kCopyingBlock = size_t{1} << 18;
+
 /// So many rays count as much as the guess from areas that they correct.
 constexpr float kGuessWeight = 16.0f;
 
@@ -89,6 +92,7 @@ SharedPlaces place(const Array<uint8_t>& sizes, const WideTreeConfig& config, Me
 Layout make_layout(const WideDraft& draft, const WideTreeConfig& config, Memory& memory,
                    const Parallel& parallel) {
   Layout layout;
+  parallel.check_cancelled();
   parallel.for_each(2, [&](size_t part) {
     if (part == 1) {
       layout.leaves = place(draft.leaf_sizes, config, memory);
@@ -226,27 +230,6 @@ void check_width(uint32_t width) {
   throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "width is %u, expected 4, 8 or 16", width);
 }
 
-/// The frame of the stored boxes. Boxes lie within the root's, and rounding keeps that order, so
-/// the root has the greatest bounds.
-void set_frame(const WideDraft& draft, TreeView& view) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const float lower = draft.boxes[0].lower[axis], upper = draft.boxes[0].upper[axis];
-    const float centre = 0.5f * lower + 0.5f * upper;
-    view.centre[axis] = centre;
-    view.greatest_bound[axis] = std::max(-subtract_down(lower, centre), subtract_up(upper, centre));
-  }
-}
-
-double sah_cost_of(const WideDraft& draft, const WideTreeConfig& config) {
-  const double root_area = draft.boxes[0].half_area();
-  // Points and lines have no area: there, each node is as likely to be met as the root.
-  if (!(root_area > 0.0)) {
-    return config.node_cost * static_cast<double>(draft.nodes.size()) +
-           config.leaf_cost * static_cast<double>(draft.leaf_sizes.size());
-  }
-  return (config.node_cost * draft.node_area + config.leaf_cost * draft.leaf_area) / root_area;
-}
-
 }  // namespace
 
 Contraction contract_by(const BinaryBvh& binary, const TriangleSource& source,
@@ -262,6 +245,53 @@ Contraction contract_by(const BinaryBvh& binary, const TriangleSource& source,
   return contract_optimally(binary, optimal, memory, parallel);
 }
 
+WideTree copy_of(const WideTree& tree, Memory& memory, const Parallel& parallel) {
+  WideTree copy;
+  copy.width = tree.width;
+  copy.leaf_width = tree.leaf_width;
+  copy.leaf_layout = tree.leaf_layout;
+  copy.memory = Array<unsigned char>(memory, tree.memory.size());
+  parallel.for_blocks(tree.memory.size(), kCopyingBlock, [&](size_t begin, size_t end) {
+    std::memcpy(copy.memory.data() + begin, tree.memory.data() + begin, end - begin);
+  });
+  copy.view = tree.view;
+  copy.view.memory = copy.memory.data();
+  copy.node_count = tree.node_count;
+  copy.leaf_block_count = tree.leaf_block_count;
+  copy.used_slots = tree.used_slots;
+  copy.used_lanes = tree.used_lanes;
+  copy.depth = tree.depth;
+  copy.sah_cost = tree.sah_cost;
+  return copy;
+}
+
+Vec3f reach_of(const Bounds& box, const Vec3f& centre) {
+  Vec3f reach;
+  for (int axis = 0; axis < 3; ++axis) {
+    reach[axis] = std::max(-subtract_down(box.lower[axis], centre[axis]),
+                           subtract_up(box.upper[axis], centre[axis]));
+  }
+  return reach;
+}
+
+void set_frame(const Bounds& root_box, TreeView& view) {
+  for (int axis = 0; axis < 3; ++axis) {
+    view.centre[axis] = 0.5f * root_box.lower[axis] + 0.5f * root_box.upper[axis];
+  }
+  view.greatest_bound = reach_of(root_box, view.centre);
+}
+
+double relative_cost(const TreeAreas& areas, const Bounds& root_box, double node_cost,
+                     double leaf_cost) {
+  const double root_area = root_box.half_area();
+  // Points and lines have no area: there, each node is as likely to be met as the root.
+  if (!(root_area > 0.0)) {
+    return node_cost * static_cast<double>(areas.node_count) +
+           leaf_cost * static_cast<double>(areas.leaf_count);
+  }
+  return (node_cost * areas.node_area + leaf_cost * areas.leaf_area) / root_area;
+}
+
 WideTree pack_wide_tree(const WideDraft& draft, const TriangleSource& source,
                         const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {
   WideTree tree;
@@ -274,13 +304,15 @@ WideTree pack_wide_tree(const WideDraft& draft, const TriangleSource& source,
   const Layout layout = make_layout(draft, config, memory, parallel);
   tree.node_count = layout.nodes.count;
   tree.leaf_block_count = layout.leaves.count;
-  set_frame(draft, tree.view);
+  set_frame(draft.boxes[0], tree.view);
   tree.view.root = reference_of(draft.children[0], layout, tree);
   tree.view.has_duplicates = draft.has_duplicates ? 1 : 0;
   tree.used_slots = draft.children.size() - 1;
   tree.used_lanes = draft.primitive_ids.size();
   tree.depth = draft.depth;
-  tree.sah_cost = sah_cost_of(draft, config);
+  tree.sah_cost =
+      relative_cost({draft.node_area, draft.leaf_area, draft.nodes.size(), draft.leaf_sizes.size()},
+                    draft.boxes[0], config.node_cost, config.leaf_cost);
   switch (config.width) {
     case 4:
       pack<4>(draft, source, layout, tree, memory, parallel);

@@ -83,6 +83,26 @@ struct WideTreeConfig {
 Contraction contract_by(const BinaryBvh& binary, const TriangleSource& source,
                         const WideTreeConfig& config, Memory& memory, const Parallel& parallel);
 
+/// The same tree in memory of its own.
+WideTree copy_of(const WideTree& tree, Memory& memory, const Parallel& parallel);
+
+/// The greatest absolute coordinates of a box relative to a centre, rounded up.
+Vec3f reach_of(const Bounds& box, const Vec3f& centre);
+
+/// Gives stored boxes a frame around the root's box. Boxes lie within the root's, and rounding
+/// keeps that order, so the root has the greatest bounds.
+void set_frame(const Bounds& root_box, TreeView& view);
+
+/// What the nodes and leaves of a tree add up to, each for each of its owners.
+struct TreeAreas {
+  double node_area = 0.0, leaf_area = 0.0;  ///< sums of half areas
+  uint64_t node_count = 0, leaf_count = 0;
+};
+
+/// The surface area heuristic, relative to the root's box.
+double relative_cost(const TreeAreas& areas, const Bounds& root_box, double node_cost,
+                     double leaf_cost);
+
 /// Contracts a binary tree whose leaves own at most config.width primitives. Takes the tree, to
 /// free it before the wide one is written.
 WideDraft contract_to_draft(BinaryBvh binary, const TriangleSource& source,

@@ -18,14 +18,14 @@ TEST(Base, VersionsAreThoseOfTheHeader) {
 
 TEST(Base, EveryResultHasItsOwnName) {
   std::string names;
-  for (kiwami_result result = KIWAMI_OK; result >= KIWAMI_ERROR_IO; --result) {
+  for (kiwami_result result = KIWAMI_OK; result >= KIWAMI_ERROR_CANCELLED; --result) {
     const std::string name = kiwami_result_name(result);
     EXPECT_NE(name, "unknown result");
     EXPECT_EQ(names.find("[" + name + "]"), std::string::npos) << name;
     names += "[" + name + "]";
   }
   EXPECT_STREQ(kiwami_result_name(1), "unknown result");
-  EXPECT_STREQ(kiwami_result_name(KIWAMI_ERROR_IO - 1), "unknown result");
+  EXPECT_STREQ(kiwami_result_name(KIWAMI_ERROR_CANCELLED - 1), "unknown result");
 }
 
 TEST(LastError, IsCutToTheCapacityAndSaysWhatTheWholeNeeds) {

@@ -174,7 +174,7 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_device_info, thread_count, 24);
   FIELD(kiwami_device_info, reserved, 28);
 
-  SIZE(kiwami_scene_info, 144);
+  SIZE(kiwami_scene_info, 152);
   FIELD(kiwami_scene_info, struct_size, 0);
   FIELD(kiwami_scene_info, bvh_width, 4);
   FIELD(kiwami_scene_info, leaf_width, 8);
@@ -194,6 +194,7 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_scene_info, bounds_min, 112);
   FIELD(kiwami_scene_info, bounds_max, 124);
   FIELD(kiwami_scene_info, reference_count, 136);
+  FIELD(kiwami_scene_info, refit_count, 144);
 
   SIZE(kiwami_query, 24);
   FIELD(kiwami_query, struct_size, 0);

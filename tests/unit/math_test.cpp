@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "math/bounds.h"
+#include "math/float4.h"
 #include "math/rounding.h"
 #include "support/environment.h"
 #include "support/random.h"
@@ -80,6 +81,32 @@ TEST(Rounding, DirectedDifferencesSeeWhatADoubleCannotHold) {
       EXPECT_EQ(kiwami::subtract_up(large, tiny), large);
       EXPECT_EQ(kiwami::subtract_down(large, -tiny), large);
       EXPECT_EQ(kiwami::subtract_up(large, -tiny), std::nextafter(large, kInfinity));
+    }
+  }
+}
+
+TEST(Rounding, FourDirectedDifferencesAreThoseOfOne) {
+  Random random(seed());
+  const auto number = [&] {
+    const float value = std::ldexp(random.symmetric(), static_cast<int>(random.below(200)) - 149);
+    return random.one_in(20) ? 0.0f : random.one_in(20) ? -0.0f : value;
+  };
+  for (int i = 0; i < 100000; ++i) {
+    kiwami::Float4 a{}, b{};
+    for (int k = 0; k < 4; ++k) {
+      a[k] = number();
+      b[k] = random.one_in(10)  ? a[k]
+             : random.one_in(2) ? a[k] * (1 + random.symmetric())
+                                : number();
+    }
+    const kiwami::Float4 down = kiwami::subtract_down(a, b), up = kiwami::subtract_up(a, b);
+    for (int k = 0; k < 4; ++k) {
+      ASSERT_EQ(std::bit_cast<uint32_t>(down[k]),
+                std::bit_cast<uint32_t>(kiwami::subtract_down(a[k], b[k])))
+          << a[k] << " - " << b[k];
+      ASSERT_EQ(std::bit_cast<uint32_t>(up[k]),
+                std::bit_cast<uint32_t>(kiwami::subtract_up(a[k], b[k])))
+          << a[k] << " - " << b[k];
     }
   }
 }

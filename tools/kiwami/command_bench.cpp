@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "kiwami/bench.h"
+#include "kiwami/bench_change.h"
 #include "kiwami/bench_pipelines.h"
 #include "kiwami/bench_report.h"
 #include "kiwami/bench_structures.h"
@@ -40,6 +41,7 @@ struct BenchOptions {
   PipelineOptions pipeline;
   std::string pipelines;
   std::string structures;
+  bool change = false;
   uint32_t rounds = 5;
   uint64_t ray_count = 1u << 20;
   std::string clock = "wall";
@@ -192,11 +194,28 @@ int run_structure_table(const BenchOptions& options, const BenchSettings& settin
   return all_right ? 0 : kWrongAnswer;
 }
 
+/// Refits in place of rays.
+int run_change_table(const BenchOptions& options, const BenchSettings& settings,
+                     const std::vector<std::string>& scenes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  bool all_right = true;
+  for (const std::string& scene : scenes) {
+    for (const ChangeRow& row : run_change(scene, settings)) {
+      print_row(row, peer_name(settings));
+      json.push_back(to_json(row, peer_name(settings)));
+      all_right = all_right && row.wrong.empty();
+    }
+    if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
+  }
+  return all_right ? 0 : kWrongAnswer;
+}
+
 int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   const std::vector<std::string> scenes = choose_scenes(options);
   if (!options.json.empty()) check_writable("--json", options.json);
   if (!options.pipelines.empty()) return run_pipeline_table(options, settings, scenes);
+  if (options.change) return run_change_table(options, settings, scenes);
   if (!options.structures.empty()) return run_structure_table(options, settings, scenes);
   const std::string peer = peer_name(settings);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -288,6 +307,8 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
   command.add_option("--structures", options.structures,
                      "A table of textbook structures in place of a peer, some of grid, kd_tree, "
                      "bih and bvh, next to the library, one ray a call on one thread");
+  command.add_flag("--change", options.change,
+                   "Refits of the scene with moving vertices, in place of rays");
   command.add_option("--rounds", options.rounds, "Runs of each side; their medians count")
       ->check(whole_number(1, 1000))
       ->capture_default_str();

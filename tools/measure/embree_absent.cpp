@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "measure/embree_contender.h"
+#include "measure/embree_refit.h"
 #include "measure/tracer.h"
 
 namespace kiwami::tools {
@@ -7,6 +8,10 @@ namespace kiwami::tools {
 std::unique_ptr<EmbreeTracer> EmbreeTracer::create(const SceneFile&, bool) { return nullptr; }
 
 std::unique_ptr<EmbreeContender> EmbreeContender::create(const SceneFile&, const EmbreeOptions&) {
+  return nullptr;
+}
+
+std::unique_ptr<EmbreeRefit> EmbreeRefit::create(const SceneFile&, uint32_t, uint32_t) {
   return nullptr;
 }
 

@@ -214,16 +214,6 @@ bool is_coherent(EmbreeEntrance entrance) {
          entrance == EmbreeEntrance::kStreamCoherent;
 }
 
-std::string device_config(uint32_t isa, uint32_t threads) {
-  std::string config = "threads=" + std::to_string(threads);
-  if (isa == KIWAMI_ISA_SCALAR) config += ",isa=sse2";
-  if (isa == KIWAMI_ISA_SSE) config += ",isa=sse4.2";
-  if (isa == KIWAMI_ISA_AVX2) config += ",isa=avx2";
-  // Embree keeps to 256 bits by itself unless it is told that the clock may fall.
-  if (isa == KIWAMI_ISA_AVX512) config += ",isa=avx512,frequency_level=simd512";
-  return config;
-}
-
 RTCBuildQuality build_quality(EmbreeQuality quality) {
   switch (quality) {
     case EmbreeQuality::kLow:
@@ -239,7 +229,7 @@ RTCBuildQuality build_quality(EmbreeQuality quality) {
 class Embree3Contender final : public EmbreeContender {
  public:
   Embree3Contender(const SceneFile& file, const EmbreeOptions& options)
-      : scene_(file, {device_config(options.isa, options.build_threads), options.robust,
+      : scene_(file, {embree_config(options.isa, options.build_threads), options.robust,
                       build_quality(options.quality)}) {}
 
   double build_seconds() const override { return scene_.build_seconds(); }

@@ -19,6 +19,9 @@ struct EmbreeSettings {
   RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
 };
 
+/// The configuration of a device whose instructions are limited to those of one of KIWAMI_ISA_*.
+std::string embree_config(uint32_t isa, uint32_t threads);
+
 /// Owns an Embree device and a committed scene whose geometry i is mesh i of the file.
 class EmbreeScene {
  public:

@@ -83,21 +83,6 @@ kiwami_query calling_thread_query() {
   return query;
 }
 
-/// Holds the reference to a geometry until the scene has its own.
-class Geometry {
- public:
-  Geometry(kiwami_device* device, const kiwami_triangle_mesh_desc& desc) {
-    check(kiwami_triangle_mesh_create(device, &desc, &geometry_), device);
-  }
-  ~Geometry() { kiwami_geometry_release(geometry_); }
-  Geometry(const Geometry&) = delete;
-  Geometry& operator=(const Geometry&) = delete;
-  kiwami_geometry* get() const { return geometry_; }
-
- private:
-  kiwami_geometry* geometry_ = nullptr;
-};
-
 /// Holds the reference to a scene's tree.
 class Tree {
  public:
@@ -130,9 +115,9 @@ BuiltScene::BuiltScene(const Device& device, const SceneFile& file, const BuildO
   try {
     set_parameters(device.get(), options);
     for (const Mesh& mesh : file.meshes) attach(device.get(), mesh);
-    commit();
+    commit(kiwami_scene_commit);
   } catch (...) {
-    kiwami_scene_release(scene_);
+    release();
     throw;
   }
 }
@@ -186,12 +171,26 @@ void BuiltScene::attach(kiwami_device* device, const Mesh& mesh) {
   desc.vertex_count = mesh.vertex_count();
   desc.indices = mesh.indices.data();
   desc.triangle_count = mesh.triangle_count();
-  const Geometry geometry(device, desc);
-  check(kiwami_scene_attach(scene_, geometry.get(), nullptr), device);
+  kiwami_geometry* geometry = nullptr;
+  check(kiwami_triangle_mesh_create(device, &desc, &geometry), device);
+  geometries_.push_back(geometry);
+  check(kiwami_scene_attach(scene_, geometry, nullptr), device);
 }
 
-void BuiltScene::commit() {
-  check(kiwami_scene_commit(scene_), nullptr);
+void BuiltScene::release() {
+  for (kiwami_geometry* geometry : geometries_) kiwami_geometry_release(geometry);
+  kiwami_scene_release(scene_);
+}
+
+void BuiltScene::refit() {
+  for (kiwami_geometry* geometry : geometries_) {
+    check(kiwami_triangle_mesh_update_vertices(geometry, nullptr, 0, 0), nullptr);
+  }
+  commit(kiwami_scene_refit);
+}
+
+void BuiltScene::commit(kiwami_result (*commit_function)(kiwami_scene*)) {
+  check(commit_function(scene_), nullptr);
   read_info();
 }
 

@@ -95,9 +95,12 @@ class BuiltScene : public Tracer {
   BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options = {});
   /// A scene that was saved, with its tree; `load_flags` are KIWAMI_LOAD_*. It needs no other file.
   BuiltScene(const Device& device, const std::string& path, uint32_t load_flags);
-  ~BuiltScene() override { kiwami_scene_release(scene_); }
+  ~BuiltScene() override { release(); }
   BuiltScene(const BuiltScene&) = delete;
   BuiltScene& operator=(const BuiltScene&) = delete;
+
+  /// After the file's vertices have moved.
+  void refit();
 
   const kiwami_scene_info& info() const { return info_; }
   /// Saves it with its tree, and tells the size of the file.
@@ -117,12 +120,14 @@ class BuiltScene : public Tracer {
  private:
   void set_parameters(kiwami_device* device, const BuildOptions& options);
   void attach(kiwami_device* device, const Mesh& mesh);
-  void commit();
+  void commit(kiwami_result (*commit_function)(kiwami_scene*));
+  void release();
   void read_info();
   kiwami_bvh_measures measure(const kiwami_bvh* bvh, uint32_t flags,
                               kiwami_bvh_node_measures* nodes) const;
 
   kiwami_scene* scene_ = nullptr;
+  std::vector<kiwami_geometry*> geometries_;
   kiwami_scene_info info_{};
   double node_cost_ = 1.0;
   double leaf_cost_ = 1.0;

@@ -23,6 +23,9 @@ internal delegate void kiwami_deallocate(IntPtr user, IntPtr memory, UIntPtr siz
 internal delegate void kiwami_log(IntPtr user, int severity, IntPtr sentence);
 
 [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate int kiwami_progress(IntPtr user, double fraction);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
 internal delegate int kiwami_write(IntPtr user, IntPtr data, UIntPtr size);
 
 [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
@@ -97,7 +100,8 @@ internal unsafe struct kiwami_scene_info {
   public fixed float bounds_min[3];
   public fixed float bounds_max[3];
   public ulong reference_count;
-  public const int Size = 144;
+  public ulong refit_count;
+  public const int Size = 152;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -524,6 +528,7 @@ internal static class Native {
   public const int KIWAMI_ERROR_CAPACITY = -9;
   public const int KIWAMI_ERROR_INVALID_FILE = -10;
   public const int KIWAMI_ERROR_IO = -11;
+  public const int KIWAMI_ERROR_CANCELLED = -12;
   public const uint KIWAMI_ISA_AUTO = 0;
   public const uint KIWAMI_ISA_SCALAR = 1;
   public const uint KIWAMI_ISA_SSE = 2;
@@ -652,6 +657,12 @@ internal static class Native {
   public static extern int kiwami_triangle_mesh_create(IntPtr device, IntPtr desc, IntPtr geometry);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_triangle_mesh_update_vertices(IntPtr geometry, IntPtr vertices, ulong vertex_offset, ulong vertex_stride);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_geometry_set_mask(IntPtr geometry, uint mask);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern void kiwami_geometry_retain(IntPtr geometry);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
@@ -673,6 +684,12 @@ internal static class Native {
   public static extern int kiwami_scene_detach(IntPtr scene, uint geometry_id);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_replace(IntPtr scene, uint geometry_id, IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_enable(IntPtr scene, uint geometry_id, int is_enabled);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_scene_set_parameter(IntPtr scene, uint parameter, double value);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
@@ -691,7 +708,13 @@ internal static class Native {
   public static extern IntPtr kiwami_method_name(uint stage, uint method);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_set_progress(IntPtr scene, IntPtr function, IntPtr user);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_scene_commit(IntPtr scene);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_refit(IntPtr scene);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_scene_get_info(IntPtr scene, IntPtr info);

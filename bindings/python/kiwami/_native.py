@@ -24,6 +24,7 @@ KIWAMI_ERROR_INTERNAL = -8
 KIWAMI_ERROR_CAPACITY = -9
 KIWAMI_ERROR_INVALID_FILE = -10
 KIWAMI_ERROR_IO = -11
+KIWAMI_ERROR_CANCELLED = -12
 KIWAMI_ISA_AUTO = 0
 KIWAMI_ISA_SCALAR = 1
 KIWAMI_ISA_SSE = 2
@@ -142,6 +143,8 @@ kiwami_deallocate = ctypes.CFUNCTYPE(
 
 kiwami_log = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int32, ctypes.c_void_p)
 
+kiwami_progress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_double)
+
 kiwami_write = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)
 
 kiwami_read = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)
@@ -216,6 +219,7 @@ class kiwami_scene_info(ctypes.Structure):
         ("bounds_min", ctypes.c_float * 3),
         ("bounds_max", ctypes.c_float * 3),
         ("reference_count", ctypes.c_uint64),
+        ("refit_count", ctypes.c_uint64),
     ]
 
 
@@ -624,7 +628,7 @@ SIZES = {
     kiwami_device_desc: 80,
     kiwami_device_info: 32,
     kiwami_triangle_mesh_desc: 80,
-    kiwami_scene_info: 144,
+    kiwami_scene_info: 152,
     kiwami_ray: 48,
     kiwami_hit: 36,
     kiwami_input_field: 16,
@@ -691,6 +695,15 @@ def declare(library):
         ctypes.c_void_p,
         ctypes.c_void_p,
     ]
+    library.kiwami_triangle_mesh_update_vertices.restype = ctypes.c_int32
+    library.kiwami_triangle_mesh_update_vertices.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_uint64,
+        ctypes.c_uint64,
+    ]
+    library.kiwami_geometry_set_mask.restype = ctypes.c_int32
+    library.kiwami_geometry_set_mask.argtypes = [ctypes.c_void_p, ctypes.c_uint32]
     library.kiwami_geometry_retain.restype = None
     library.kiwami_geometry_retain.argtypes = [ctypes.c_void_p]
     library.kiwami_geometry_release.restype = None
@@ -705,6 +718,10 @@ def declare(library):
     library.kiwami_scene_attach.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
     library.kiwami_scene_detach.restype = ctypes.c_int32
     library.kiwami_scene_detach.argtypes = [ctypes.c_void_p, ctypes.c_uint32]
+    library.kiwami_scene_replace.restype = ctypes.c_int32
+    library.kiwami_scene_replace.argtypes = [ctypes.c_void_p, ctypes.c_uint32, ctypes.c_void_p]
+    library.kiwami_scene_enable.restype = ctypes.c_int32
+    library.kiwami_scene_enable.argtypes = [ctypes.c_void_p, ctypes.c_uint32, ctypes.c_int32]
     library.kiwami_scene_set_parameter.restype = ctypes.c_int32
     library.kiwami_scene_set_parameter.argtypes = [
         ctypes.c_void_p,
@@ -741,8 +758,16 @@ def declare(library):
     ]
     library.kiwami_method_name.restype = ctypes.c_char_p
     library.kiwami_method_name.argtypes = [ctypes.c_uint32, ctypes.c_uint32]
+    library.kiwami_scene_set_progress.restype = ctypes.c_int32
+    library.kiwami_scene_set_progress.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
     library.kiwami_scene_commit.restype = ctypes.c_int32
     library.kiwami_scene_commit.argtypes = [ctypes.c_void_p]
+    library.kiwami_scene_refit.restype = ctypes.c_int32
+    library.kiwami_scene_refit.argtypes = [ctypes.c_void_p]
     library.kiwami_scene_get_info.restype = ctypes.c_int32
     library.kiwami_scene_get_info.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
     library.kiwami_scene_validate.restype = ctypes.c_int32

@@ -28,6 +28,7 @@ pub const KIWAMI_ERROR_INTERNAL: i32 = -8;
 pub const KIWAMI_ERROR_CAPACITY: i32 = -9;
 pub const KIWAMI_ERROR_INVALID_FILE: i32 = -10;
 pub const KIWAMI_ERROR_IO: i32 = -11;
+pub const KIWAMI_ERROR_CANCELLED: i32 = -12;
 pub const KIWAMI_ISA_AUTO: u32 = 0;
 pub const KIWAMI_ISA_SCALAR: u32 = 1;
 pub const KIWAMI_ISA_SSE: u32 = 2;
@@ -159,6 +160,9 @@ pub type kiwami_deallocate =
 pub type kiwami_log =
     Option<unsafe extern "C" fn(user: *mut c_void, severity: kiwami_result, sentence: *const c_char)>;
 
+pub type kiwami_progress =
+    Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
+
 pub type kiwami_write =
     Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
 
@@ -238,8 +242,9 @@ pub struct kiwami_scene_info {
     pub bounds_min: [f32; 3],
     pub bounds_max: [f32; 3],
     pub reference_count: u64,
+    pub refit_count: u64,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_scene_info>() == 144);
+const _: () = assert!(std::mem::size_of::<kiwami_scene_info>() == 152);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -688,6 +693,8 @@ extern "C" {
     pub fn kiwami_isa_name(isa: u32) -> *const c_char;
     pub fn kiwami_triangle_mesh_desc_init(desc: *mut kiwami_triangle_mesh_desc, size: usize) -> kiwami_result;
     pub fn kiwami_triangle_mesh_create(device: *mut kiwami_device, desc: *const kiwami_triangle_mesh_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
+    pub fn kiwami_triangle_mesh_update_vertices(geometry: *mut kiwami_geometry, vertices: *const c_void, vertex_offset: u64, vertex_stride: u64) -> kiwami_result;
+    pub fn kiwami_geometry_set_mask(geometry: *mut kiwami_geometry, mask: u32) -> kiwami_result;
     pub fn kiwami_geometry_retain(geometry: *mut kiwami_geometry);
     pub fn kiwami_geometry_release(geometry: *mut kiwami_geometry);
     pub fn kiwami_scene_create(device: *mut kiwami_device, scene: *mut *mut kiwami_scene) -> kiwami_result;
@@ -695,13 +702,17 @@ extern "C" {
     pub fn kiwami_scene_release(scene: *mut kiwami_scene);
     pub fn kiwami_scene_attach(scene: *mut kiwami_scene, geometry: *mut kiwami_geometry, geometry_id: *mut u32) -> kiwami_result;
     pub fn kiwami_scene_detach(scene: *mut kiwami_scene, geometry_id: u32) -> kiwami_result;
+    pub fn kiwami_scene_replace(scene: *mut kiwami_scene, geometry_id: u32, geometry: *mut kiwami_geometry) -> kiwami_result;
+    pub fn kiwami_scene_enable(scene: *mut kiwami_scene, geometry_id: u32, is_enabled: i32) -> kiwami_result;
     pub fn kiwami_scene_set_parameter(scene: *mut kiwami_scene, parameter: u32, value: f64) -> kiwami_result;
     pub fn kiwami_parameter_bounds(parameter: u32, lowest: *mut f64, highest: *mut f64, preset: *mut f64) -> kiwami_result;
     pub fn kiwami_scene_set_representative_rays(scene: *mut kiwami_scene, rays: *const kiwami_ray, stride: usize, count: usize) -> kiwami_result;
     pub fn kiwami_scene_set_optimizers(scene: *mut kiwami_scene, methods: *const u32, count: usize) -> kiwami_result;
     pub fn kiwami_quality_methods(quality: u32, builder: *mut u32, optimizers: *mut u32, optimizer_count: *mut usize, contraction: *mut u32) -> kiwami_result;
     pub fn kiwami_method_name(stage: u32, method: u32) -> *const c_char;
+    pub fn kiwami_scene_set_progress(scene: *mut kiwami_scene, function: kiwami_progress, user: *mut c_void) -> kiwami_result;
     pub fn kiwami_scene_commit(scene: *mut kiwami_scene) -> kiwami_result;
+    pub fn kiwami_scene_refit(scene: *mut kiwami_scene) -> kiwami_result;
     pub fn kiwami_scene_get_info(scene: *const kiwami_scene, info: *mut kiwami_scene_info) -> kiwami_result;
     pub fn kiwami_scene_validate(scene: *const kiwami_scene) -> kiwami_result;
     pub fn kiwami_ray_fields_init(rays: *mut kiwami_ray_fields, size: usize) -> kiwami_result;

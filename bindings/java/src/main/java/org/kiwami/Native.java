@@ -29,6 +29,7 @@ final class Native {
   static final int KIWAMI_ERROR_CAPACITY = -9;
   static final int KIWAMI_ERROR_INVALID_FILE = -10;
   static final int KIWAMI_ERROR_IO = -11;
+  static final int KIWAMI_ERROR_CANCELLED = -12;
   static final int KIWAMI_ISA_AUTO = 0;
   static final int KIWAMI_ISA_SCALAR = 1;
   static final int KIWAMI_ISA_SSE = 2;
@@ -170,7 +171,7 @@ final class Native {
 
   /** Offsets of kiwami_scene_info. */
   static final class SceneInfo {
-    static final int STRUCT_BYTES = 144;
+    static final int STRUCT_BYTES = 152;
     static final int STRUCT_SIZE = 0;
     static final int BVH_WIDTH = 4;
     static final int LEAF_WIDTH = 8;
@@ -190,6 +191,7 @@ final class Native {
     static final int BOUNDS_MIN = 112;
     static final int BOUNDS_MAX = 124;
     static final int REFERENCE_COUNT = 136;
+    static final int REFIT_COUNT = 144;
   }
 
   /** Offsets of kiwami_ray. */
@@ -621,6 +623,10 @@ final class Native {
 
   static native int kiwami_triangle_mesh_create(Pointer device, Pointer desc, Pointer geometry);
 
+  static native int kiwami_triangle_mesh_update_vertices(Pointer geometry, Pointer vertices, long vertexOffset, long vertexStride);
+
+  static native int kiwami_geometry_set_mask(Pointer geometry, int mask);
+
   static native void kiwami_geometry_retain(Pointer geometry);
 
   static native void kiwami_geometry_release(Pointer geometry);
@@ -635,6 +641,10 @@ final class Native {
 
   static native int kiwami_scene_detach(Pointer scene, int geometryId);
 
+  static native int kiwami_scene_replace(Pointer scene, int geometryId, Pointer geometry);
+
+  static native int kiwami_scene_enable(Pointer scene, int geometryId, int isEnabled);
+
   static native int kiwami_scene_set_parameter(Pointer scene, int parameter, double value);
 
   static native int kiwami_parameter_bounds(int parameter, Pointer lowest, Pointer highest, Pointer preset);
@@ -647,7 +657,11 @@ final class Native {
 
   static native Pointer kiwami_method_name(int stage, int method);
 
+  static native int kiwami_scene_set_progress(Pointer scene, Callback function, Pointer user);
+
   static native int kiwami_scene_commit(Pointer scene);
+
+  static native int kiwami_scene_refit(Pointer scene);
 
   static native int kiwami_scene_get_info(Pointer scene, Pointer info);
 

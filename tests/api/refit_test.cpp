@@ -1,0 +1,540 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes whose vertices, masks and geometries change: after every change the answers are those of
+// a scene that was made anew.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include "api/api_support.h"
+#include "support/environment.h"
+#include "support/random.h"
+
+namespace kiwami_api_tests {
+namespace {
+
+using kiwami_tests::Random;
+using kiwami_tests::seed;
+
+kiwami_result update(const Geometry& mesh, const Triangles& triangles) {
+  return kiwami_triangle_mesh_update_vertices(mesh.get(), triangles.vertices.data(), 0, 0);
+}
+
+void move_all(Triangles& triangles, float distance, Random& random) {
+  for (float& coordinate : triangles.vertices) coordinate += distance * random.symmetric();
+}
+
+/// The answers of a new scene of these triangles.
+std::vector<kiwami_hit> fresh_hits(const Device& device, const Triangles& triangles,
+                                   const std::vector<kiwami_ray>& rays) {
+  return closest_hits(make_scene(device, make_mesh(device, triangles.desc())), rays);
+}
+
+void expect_valid(const Scene& scene) {
+  EXPECT_EQ(kiwami_scene_validate(scene.get()), KIWAMI_OK) << last_error();
+}
+
+class RefitTest : public testing::TestWithParam<uint32_t> {};
+
+TEST_P(RefitTest, GivesTheAnswersOfANewScene) {
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed()));
+  Random random(seed());
+  const Device device = make_device();
+  const std::vector<kiwami_ray> rays = random_rays(3000, seed());
+  Triangles triangles = random_triangles(2000, seed());
+  kiwami_triangle_mesh_desc desc = triangles.desc();
+  desc.flags = GetParam();
+  const Geometry mesh = make_mesh(device, desc);
+  const Scene scene = make_scene(device, mesh);
+  EXPECT_EQ(info_of(scene).refit_count, 0u);
+  uint64_t refits = 0;
+  for (const float distance : {0.0f, 0.01f, 0.3f, 2.0f}) {
+    move_all(triangles, distance, random);
+    ASSERT_EQ(update(mesh, triangles), KIWAMI_OK) << last_error();
+    ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK) << last_error();
+    EXPECT_EQ(info_of(scene).refit_count, ++refits);
+    expect_valid(scene);
+    EXPECT_TRUE(are_equal(closest_hits(scene, rays), fresh_hits(device, triangles, rays)))
+        << distance;
+  }
+  EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(info_of(scene).refit_count, 0u);
+  EXPECT_TRUE(are_equal(closest_hits(scene, rays), fresh_hits(device, triangles, rays)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Buffers, RefitTest,
+                         testing::Values(0u, uint32_t{KIWAMI_MESH_SHARE_BUFFERS}));
+
+TEST(Refit, GivesTheAnswersOfANewSceneInTreesOfEveryKind) {
+  Random random(seed());
+  const Device device = make_device();
+  const std::vector<kiwami_ray> rays = random_rays(1000, seed());
+  for (const uint32_t width : {4u, 8u, 16u}) {
+    for (const uint32_t builder : {KIWAMI_BUILDER_LBVH, KIWAMI_BUILDER_SPATIAL_SPLIT}) {
+      Triangles triangles = random_triangles(700, seed() + width);
+      const Geometry mesh = make_mesh(device, triangles.desc());
+      const Scene scene = make_scene(device);
+      kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_BVH_WIDTH, width);
+      kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_BUILDER, builder);
+      kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_VALIDATE_BUILD, 1);
+      kiwami_scene_attach(scene.get(), mesh.get(), nullptr);
+      ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
+      for (const float distance : {0.02f, 0.5f}) {
+        move_all(triangles, distance, random);
+        ASSERT_EQ(update(mesh, triangles), KIWAMI_OK);
+        ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK) << last_error();
+        EXPECT_TRUE(are_equal(closest_hits(scene, rays), fresh_hits(device, triangles, rays)));
+      }
+      EXPECT_EQ(info_of(scene).refit_count, 2u);
+    }
+  }
+}
+
+TEST(Refit, LetsTrianglesVanishAndComeBack) {
+  Random random(seed());
+  const Device device = make_device();
+  const std::vector<kiwami_ray> rays = random_rays(2000, seed());
+  const Triangles original = random_triangles(500, seed());
+  const Geometry mesh = make_mesh(device, original.desc());
+  const Scene scene = make_scene(device, mesh);
+  const std::vector<kiwami_hit> before = closest_hits(scene, rays);
+  for (const uint32_t one_in : {20u, 1u}) {
+    Triangles holed = original;
+    for (float& coordinate : holed.vertices) {
+      if (random.one_in(one_in)) coordinate = random.one_in(2) ? NAN : kInfinity;
+    }
+    ASSERT_EQ(update(mesh, holed), KIWAMI_OK);
+    ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK) << last_error();
+    EXPECT_EQ(info_of(scene).refit_count, 1u);
+    const Scene fresh = make_scene(device, make_mesh(device, holed.desc()));
+    EXPECT_EQ(info_of(scene).triangle_count, info_of(fresh).triangle_count);
+    EXPECT_EQ(info_of(scene).skipped_count, info_of(fresh).skipped_count);
+    EXPECT_EQ(info_of(scene).bounds_min[0], info_of(fresh).bounds_min[0]);
+    expect_valid(scene);
+    EXPECT_TRUE(are_equal(closest_hits(scene, rays), closest_hits(fresh, rays)));
+    ASSERT_EQ(update(mesh, original), KIWAMI_OK);
+    ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK) << last_error();
+    EXPECT_TRUE(are_equal(closest_hits(scene, rays), before));
+    ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK);
+  }
+}
+
+TEST(Refit, BuildsWhereATriangleHasNoPlaceInTheTree) {
+  const Device device = make_device();
+  const std::vector<kiwami_ray> rays = random_rays(1000, seed());
+  const Triangles original = random_triangles(300, seed());
+  Triangles holed = original;
+  holed.vertices[9 * 17 + 4] = NAN;
+  holed.vertices[9 * 299] = NAN;
+  const Geometry mesh = make_mesh(device, holed.desc());
+  const Scene scene = make_scene(device, mesh);
+  EXPECT_EQ(info_of(scene).skipped_count, 2u);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(info_of(scene).refit_count, 1u);
+  ASSERT_EQ(update(mesh, original), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(info_of(scene).refit_count, 0u);
+  EXPECT_EQ(info_of(scene).skipped_count, 0u);
+  EXPECT_TRUE(are_equal(closest_hits(scene, rays), fresh_hits(device, original, rays)));
+}
+
+TEST(Refit, BuildsTheFirstTimeAndWhereGeometriesCameOrWent) {
+  const Device device = make_device();
+  const Geometry near = make_mesh(device, square(1).desc());
+  const Geometry far = make_mesh(device, square(2).desc());
+  const Scene scene = make_scene(device);
+  uint32_t id = 0;
+  ASSERT_EQ(kiwami_scene_attach(scene.get(), far.get(), &id), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK) << last_error();
+  EXPECT_EQ(closest_hit(scene, ray_along_z(0.5f, 0.25f)).t, 2.0f);
+  ASSERT_EQ(kiwami_scene_attach(scene.get(), near.get(), &id), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(info_of(scene).refit_count, 0u);
+  EXPECT_EQ(closest_hit(scene, ray_along_z(0.5f, 0.25f)).t, 1.0f);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(info_of(scene).refit_count, 1u);
+  ASSERT_EQ(kiwami_scene_detach(scene.get(), id), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(info_of(scene).refit_count, 0u);
+  EXPECT_EQ(closest_hit(scene, ray_along_z(0.5f, 0.25f)).t, 2.0f);
+}
+
+TEST(Change, DisabledGeometriesAreNotMet) {
+  const Device device = make_device();
+  const Scene scene = make_scene(device, make_mesh(device, square(1).desc()));
+  uint32_t far = 0;
+  ASSERT_EQ(kiwami_scene_attach(scene.get(), make_mesh(device, square(2).desc()).get(), &far),
+            KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK);
+  const kiwami_ray ray = ray_along_z(0.5f, 0.25f);
+  ASSERT_EQ(kiwami_scene_enable(scene.get(), 0, 0), KIWAMI_OK);
+  EXPECT_EQ(closest_hit(scene, ray).geometry_id, 0u);  // until the next commit
+  for (const auto commit : {kiwami_scene_commit, kiwami_scene_refit}) {
+    ASSERT_EQ(commit(scene.get()), KIWAMI_OK);
+    EXPECT_EQ(closest_hit(scene, ray).geometry_id, far);
+    EXPECT_EQ(info_of(scene).triangle_count, 2u);
+  }
+  // The number stays taken.
+  uint32_t third = 0;
+  ASSERT_EQ(kiwami_scene_attach(scene.get(), make_mesh(device, square(3).desc()).get(), &third),
+            KIWAMI_OK);
+  EXPECT_EQ(third, 2u);
+  ASSERT_EQ(kiwami_scene_enable(scene.get(), 0, 7), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(closest_hit(scene, ray).geometry_id, 0u);
+  // Attached anew, a geometry is enabled.
+  ASSERT_EQ(kiwami_scene_enable(scene.get(), 0, 0), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_detach(scene.get(), 0), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_attach(scene.get(), make_mesh(device, square(1.5f).desc()).get(), &third),
+            KIWAMI_OK);
+  EXPECT_EQ(third, 0u);
+  ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(closest_hit(scene, ray).t, 1.5f);
+}
+
+TEST(Change, MasksAndOtherMeshesTakeEffectWithARefit) {
+  const Device device = make_device();
+  const Geometry near = make_mesh(device, square(1).desc());
+  const Scene scene = make_scene(device, near);
+  ASSERT_EQ(kiwami_scene_attach(scene.get(), make_mesh(device, square(2).desc()).get(), nullptr),
+            KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK);
+  kiwami_ray ray = ray_along_z(0.5f, 0.25f);
+  ray.mask = 2;
+  ASSERT_EQ(kiwami_geometry_set_mask(near.get(), 1), KIWAMI_OK);
+  EXPECT_EQ(closest_hit(scene, ray).t, 1.0f);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(closest_hit(scene, ray).t, 2.0f);
+  ASSERT_EQ(kiwami_geometry_set_mask(near.get(), ~0u), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(closest_hit(scene, ray).t, 1.0f);
+  ASSERT_EQ(kiwami_scene_replace(scene.get(), 0, make_mesh(device, square(1.5f).desc()).get()),
+            KIWAMI_OK);
+  EXPECT_EQ(closest_hit(scene, ray).t, 1.0f);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(info_of(scene).refit_count, 3u);
+  EXPECT_EQ(closest_hit(scene, ray).t, 1.5f);
+  EXPECT_EQ(closest_hit(scene, ray).geometry_id, 0u);
+  // A mesh with another number of triangles has no place in the tree.
+  ASSERT_EQ(
+      kiwami_scene_replace(scene.get(), 0, make_mesh(device, random_triangles(50, 1).desc()).get()),
+      KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(info_of(scene).refit_count, 0u);
+  expect_valid(scene);
+}
+
+/// A scene of several meshes under changes, and what it should be.
+class ChangingScene {
+ public:
+  ChangingScene(const Device& device, uint64_t number)
+      : device_(device), random_(number, 3), scene_(make_scene(device)) {}
+
+  void change() {
+    const uint32_t place = random_.below(kPlaces);
+    Part& part = parts_[place];
+    if (!part.mesh) {
+      fill(part);
+      uint32_t id = 0;
+      EXPECT_EQ(kiwami_scene_attach(scene_.get(), part.mesh.get(), &id), KIWAMI_OK);
+      if (id == place) return;
+      // The lowest free number was another one.
+      std::swap(parts_[id], part);
+      return;
+    }
+    switch (random_.below(6)) {
+      case 0:
+        EXPECT_EQ(kiwami_scene_detach(scene_.get(), place), KIWAMI_OK);
+        part = {};
+        break;
+      case 1:
+        part.is_enabled = !part.is_enabled;
+        EXPECT_EQ(kiwami_scene_enable(scene_.get(), place, part.is_enabled), KIWAMI_OK);
+        break;
+      case 2:
+        part.mask = random_.bits();
+        EXPECT_EQ(kiwami_geometry_set_mask(part.mesh.get(), part.mask), KIWAMI_OK);
+        break;
+      case 3: {
+        const bool is_enabled = part.is_enabled;
+        fill(part);
+        part.is_enabled = is_enabled;
+        EXPECT_EQ(kiwami_scene_replace(scene_.get(), place, part.mesh.get()), KIWAMI_OK);
+        break;
+      }
+      default:
+        move(part);
+    }
+  }
+
+  kiwami_result commit() {
+    return random_.one_in(3) ? kiwami_scene_commit(scene_.get()) : kiwami_scene_refit(scene_.get());
+  }
+
+  void expect_right(const std::vector<kiwami_ray>& rays) {
+    const Scene fresh = make_scene(device_);
+    for (uint32_t place = 0; place < kPlaces; ++place) {
+      // A mesh of nothing keeps the numbers.
+      kiwami_triangle_mesh_desc desc = default_mesh();
+      if (parts_[place].mesh && parts_[place].is_enabled) {
+        desc = parts_[place].triangles->desc();
+        desc.mask = parts_[place].mask;
+      }
+      EXPECT_EQ(kiwami_scene_attach(fresh.get(), make_mesh(device_, desc).get(), nullptr),
+                KIWAMI_OK);
+    }
+    EXPECT_EQ(kiwami_scene_commit(fresh.get()), KIWAMI_OK);
+    expect_valid(scene_);
+    EXPECT_EQ(info_of(scene_).triangle_count, info_of(fresh).triangle_count);
+    EXPECT_TRUE(are_equal(closest_hits(scene_, rays), closest_hits(fresh, rays)));
+  }
+
+  const Scene& scene() const { return scene_; }
+
+ private:
+  static constexpr uint32_t kPlaces = 5;
+
+  struct Part {
+    std::unique_ptr<Triangles> triangles;  ///< at one address, for shared buffers
+    Geometry mesh;
+    bool is_enabled = true;
+    uint32_t mask = ~0u;
+  };
+
+  void fill(Part& part) {
+    auto triangles = std::make_unique<Triangles>(
+        random_triangles(random_.one_in(5) ? 0 : 1 + random_.below(60), random_.bits()));
+    kiwami_triangle_mesh_desc desc = triangles->desc();
+    desc.flags = random_.one_in(2) ? KIWAMI_MESH_SHARE_BUFFERS : 0;
+    Part filled;
+    filled.mesh = make_mesh(device_, desc);
+    filled.triangles = std::move(triangles);
+    // The scene may still hold the old shared buffers.
+    if (part.triangles) kept_.push_back(std::move(part.triangles));
+    part = std::move(filled);
+  }
+
+  void move(Part& part) {
+    std::vector<float>& vertices = part.triangles->vertices;
+    const float distance = random_.one_in(2) ? 0.05f : 3.0f;
+    const bool damages = random_.one_in(3);
+    for (float& coordinate : vertices) {
+      coordinate += distance * random_.symmetric();
+      if (!std::isfinite(coordinate)) coordinate = random_.symmetric();
+      if (damages && random_.one_in(10)) coordinate = NAN;
+    }
+    EXPECT_EQ(update(part.mesh, *part.triangles), KIWAMI_OK) << last_error();
+  }
+
+  const Device& device_;
+  Random random_;
+  Scene scene_;
+  Part parts_[kPlaces];
+  std::vector<std::unique_ptr<Triangles>> kept_;
+};
+
+TEST(Change, HostileSequencesGiveTheAnswersOfNewScenes) {
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed()));
+  const Device device = make_device();
+  const std::vector<kiwami_ray> rays = random_rays(300, seed());
+  const size_t sequences = kiwami_tests::case_budget(40);
+  for (size_t i = 0; i < sequences; ++i) {
+    SCOPED_TRACE(i);
+    ChangingScene changing(device, seed() + i);
+    Random random(seed() + i);
+    for (int step = 0; step < 12; ++step) {
+      for (uint32_t changes = random.below(4); changes != 0; --changes) changing.change();
+      ASSERT_EQ(changing.commit(), KIWAMI_OK) << last_error();
+      changing.expect_right(rays);
+      if (testing::Test::HasFailure()) return;
+    }
+  }
+}
+
+TEST(Refit, NeedsNoNewMemoryFrameByFrame) {
+  Random random(seed());
+  CountingAllocator allocator;
+  kiwami_device_desc desc = default_device();
+  allocator.install(desc);
+  {
+    const Device device = make_device(desc);
+    Triangles triangles = random_triangles(5000, seed());
+    const Geometry mesh = make_mesh(device, triangles.desc());
+    const Scene scene = make_scene(device, mesh);
+    size_t live = 0;
+    for (int frame = 0; frame < 6; ++frame) {
+      move_all(triangles, 0.01f, random);
+      ASSERT_EQ(update(mesh, triangles), KIWAMI_OK);
+      ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+      if (frame == 2) live = allocator.live_bytes;
+      if (frame > 2) {
+        EXPECT_EQ(allocator.live_bytes, live);
+      }
+    }
+    const size_t with_two = allocator.live_bytes;
+    ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK);
+    EXPECT_LT(allocator.live_bytes, with_two);
+  }
+  EXPECT_EQ(allocator.live_bytes, 0u);
+}
+
+TEST(Refit, LeavesTheTreeThatSomebodyHoldsAsItWas) {
+  Random random(seed());
+  const Device device = make_device();
+  Triangles triangles = random_triangles(400, seed());
+  const Geometry mesh = make_mesh(device, triangles.desc());
+  const Scene scene = make_scene(device, mesh);
+  std::vector<Bvh> held;
+  std::vector<std::vector<kiwami_bvh_node>> nodes;
+  for (int frame = 0; frame < 5; ++frame) {
+    held.push_back(bvh_of(scene));
+    nodes.push_back(nodes_of(held.back()));
+    move_all(triangles, 0.2f, random);
+    ASSERT_EQ(update(mesh, triangles), KIWAMI_OK);
+    ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  }
+  for (size_t i = 0; i < held.size(); ++i) {
+    EXPECT_EQ(kiwami_bvh_validate(held[i].get()), KIWAMI_OK) << last_error();
+    const std::vector<kiwami_bvh_node> now = nodes_of(held[i]);
+    ASSERT_EQ(now.size(), nodes[i].size());
+    EXPECT_EQ(std::memcmp(now.data(), nodes[i].data(), now.size() * sizeof now[0]), 0);
+  }
+}
+
+TEST(Refit, EveryFailureLeavesTheLastStructureInUse) {
+  const std::vector<kiwami_ray> rays = random_rays(200, seed());
+  CountingAllocator allocator;
+  kiwami_device_desc desc = default_device();
+  desc.thread_count = 1;
+  allocator.install(desc);
+  {
+    const Device device = make_device(desc);
+    Triangles triangles = random_triangles(300, seed());
+    const Geometry mesh = make_mesh(device, triangles.desc());
+    const Scene scene = make_scene(device, mesh);
+    const std::vector<kiwami_hit> before = closest_hits(scene, rays);
+    Random random(seed());
+    move_all(triangles, 0.3f, random);
+    size_t failures = 0;
+    for (size_t later = 0;; ++later) {
+      allocator.first_failure = allocator.calls + later;
+      kiwami_result result = update(mesh, triangles);
+      if (result == KIWAMI_OK) result = kiwami_scene_refit(scene.get());
+      allocator.first_failure = std::numeric_limits<size_t>::max();
+      if (result == KIWAMI_OK) break;
+      ASSERT_EQ(result, KIWAMI_ERROR_OUT_OF_MEMORY) << last_error();
+      ASSERT_TRUE(are_equal(closest_hits(scene, rays), before)) << later;
+      ++failures;
+    }
+    EXPECT_GT(failures, 3u);
+    EXPECT_TRUE(are_equal(closest_hits(scene, rays), fresh_hits(device, triangles, rays)));
+  }
+  EXPECT_EQ(allocator.live_bytes, 0u);
+  EXPECT_EQ(allocator.mismatches, 0u);
+}
+
+TEST(Refit, AFailingRunnerLeavesTheLastStructureInUse) {
+  kiwami_device_desc desc = default_device();
+  ThreadRunner runner;
+  runner.install(desc, 2);
+  const Device device = make_device(desc);
+  const std::vector<kiwami_ray> rays = random_rays(200, seed());
+  Triangles triangles = random_triangles(20000, seed());
+  triangles.indices.resize(3 * 20000);
+  kiwami_triangle_mesh_desc mesh_desc = triangles.desc();
+  mesh_desc.flags = KIWAMI_MESH_SHARE_BUFFERS;
+  const Geometry mesh = make_mesh(device, mesh_desc);
+  const Scene scene = make_scene(device, mesh);
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);  // so that there are two structures
+  const std::vector<kiwami_hit> before = closest_hits(scene, rays);
+  Triangles moved = triangles;
+  Random random(seed());
+  move_all(moved, 0.3f, random);
+  ASSERT_EQ(update(mesh, moved), KIWAMI_OK);
+  runner.status = 3;
+  EXPECT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_ERROR_CALLBACK);
+  runner.status = 0;
+  EXPECT_TRUE(are_equal(closest_hits(scene, rays), before));
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_TRUE(are_equal(closest_hits(scene, rays), fresh_hits(device, moved, rays)));
+}
+
+TEST(Refit, ScenesOfOneMeshAreTracedWhileAnotherMoves) {
+  const Device device = make_device();
+  Triangles triangles = random_triangles(3000, seed());
+  const Geometry mesh = make_mesh(device, triangles.desc());
+  const Scene still = make_scene(device, mesh);
+  const Scene moving = make_scene(device, mesh);
+  const std::vector<kiwami_ray> rays = random_rays(500, seed());
+  const std::vector<kiwami_hit> expected = closest_hits(still, rays);
+  std::atomic<bool> is_done{false};
+  std::atomic<int> differences{0};
+  std::thread tracer([&] {
+    while (!is_done) {
+      if (!are_equal(closest_hits(still, rays), expected)) ++differences;
+    }
+  });
+  Random random(seed());
+  for (int frame = 0; frame < 20; ++frame) {
+    move_all(triangles, 0.05f, random);
+    EXPECT_EQ(update(mesh, triangles), KIWAMI_OK);
+    EXPECT_EQ(frame % 7 == 3 ? kiwami_scene_commit(moving.get()) : kiwami_scene_refit(moving.get()),
+              KIWAMI_OK);
+  }
+  is_done = true;
+  tracer.join();
+  EXPECT_EQ(differences, 0);
+  EXPECT_TRUE(are_equal(closest_hits(moving, rays), fresh_hits(device, triangles, rays)));
+}
+
+TEST(Change, BadArgumentsAreNamed) {
+  const Device device = make_device();
+  const Device other_device = make_device();
+  const Triangles triangles = square(1);
+  const Geometry mesh = make_mesh(device, triangles.desc());
+  const Scene scene = make_scene(device, mesh);
+  const float* vertices = triangles.vertices.data();
+  const auto expect_error = [](kiwami_result result, const char* part) {
+    EXPECT_EQ(result, KIWAMI_ERROR_INVALID_ARGUMENT) << part;
+    EXPECT_NE(last_error().find(part), std::string::npos) << last_error();
+  };
+  expect_error(kiwami_triangle_mesh_update_vertices(nullptr, vertices, 0, 0), "geometry is NULL");
+  expect_error(kiwami_triangle_mesh_update_vertices(mesh.get(), nullptr, 0, 0), "vertices is NULL");
+  expect_error(kiwami_triangle_mesh_update_vertices(mesh.get(), vertices, 0, 11),
+               "vertex_stride is 11");
+  expect_error(kiwami_triangle_mesh_update_vertices(mesh.get(), vertices, ~uint64_t{0} - 20, 0),
+               "reach beyond the address space");
+  expect_error(kiwami_geometry_set_mask(nullptr, 0), "geometry is NULL");
+  expect_error(kiwami_scene_refit(nullptr), "scene is NULL");
+  expect_error(kiwami_scene_enable(nullptr, 0, 0), "scene is NULL");
+  expect_error(kiwami_scene_enable(scene.get(), 1, 0), "geometry_id is 1");
+  expect_error(kiwami_scene_replace(scene.get(), 1, mesh.get()), "geometry_id is 1");
+  expect_error(kiwami_scene_replace(scene.get(), 0, nullptr), "geometry is NULL");
+  expect_error(kiwami_scene_replace(nullptr, 0, mesh.get()), "scene is NULL");
+  expect_error(
+      kiwami_scene_replace(scene.get(), 0, make_mesh(other_device, triangles.desc()).get()),
+      "geometry is of another device");
+  // Nothing has changed.
+  ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK);
+  EXPECT_EQ(closest_hit(scene, ray_along_z(0.5f, 0.25f)).t, 1.0f);
+  // A mesh of no vertices has none to be read.
+  const Geometry empty = make_mesh(device, default_mesh());
+  EXPECT_EQ(kiwami_triangle_mesh_update_vertices(empty.get(), nullptr, 0, 0), KIWAMI_OK);
+}
+
+TEST(Refit, ChangedIndicesThatNameNoVertexAreAnError) {
+  const Device device = make_device();
+  Triangles triangles = square(1);
+  kiwami_triangle_mesh_desc desc = triangles.desc();
+  desc.flags = KIWAMI_MESH_SHARE_BUFFERS;
+  const Geometry mesh = make_mesh(device, desc);
+  const Scene scene = make_scene(device, mesh);
+  triangles.indices[4] = 4;
+  EXPECT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(last_error().find("index 1 of triangle 1 of geometry 0 is 4"), std::string::npos);
+  EXPECT_EQ(closest_hit(scene, ray_along_z(0.5f, 0.25f)).t, 1.0f);
+}
+
+}  // namespace
+}  // namespace kiwami_api_tests

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kiwami/bench.h"
+
+namespace kiwami::tools {
+
+/// What it costs to follow a scene whose vertices all move.
+struct ChangeRow {
+  BenchCase of;
+  double refit_milliseconds;
+  double build_milliseconds;
+  double sah;                     ///< of the built tree
+  double refitted_sah;            ///< after the last move
+  std::optional<PeerBuild> peer;  ///< its refits
+  std::string wrong;              ///< what is wrong with the answers, or ""
+};
+
+/// Moves all vertices of a scene round by round and refits it, in turn with Embree: one row a
+/// number of threads. The answers are compared with those of a scene built anew.
+std::vector<ChangeRow> run_change(const std::string& scene, const BenchSettings& settings);
+
+nlohmann::ordered_json to_json(const ChangeRow& row, const std::string& peer);
+void print_row(const ChangeRow& row, const std::string& peer);
+
+}  // namespace kiwami::tools
