@@ -13,6 +13,8 @@
 #include "io.h"
 #include "light.h"
 #include "scene.h"
+#include "shapes.h"
 #include "trace.h"
+#include "user_geometry.h"
 
 #endif

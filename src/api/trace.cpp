@@ -110,8 +110,9 @@ kiwami_ray_fields read_ray_fields(const kiwami_ray_fields* fields, size_t count)
 }
 
 /// Answers a call of few rays with which nothing is wrong, and returns true; false leaves it to
-/// trace_array. A single ray takes so little time that what trace_array looks at, and the
-/// registers that it saves for the case of an exception, would be a tenth of it.
+/// trace_array, also where a callback failed. A single ray takes so little time that what
+/// trace_array looks at, and the registers that it saves for the case of an exception, would be a
+/// tenth of it.
 inline bool answer_few(const kiwami_scene* scene, const Question& question, const RayBatch& batch,
                        const kiwami_query* query) {
   if (!scene || batch.count >= kParallelCount) return false;
@@ -121,8 +122,10 @@ inline bool answer_few(const kiwami_scene* scene, const Question& question, cons
     return false;
   }
   const DefaultFloatEnvironment environment;
-  question.answer(*committed, batch, request_of(query ? *query : kDefaultQuery).options);
-  return true;
+  CallbackWatch watch;
+  question.answer(*committed, batch,
+                  watch.watched(request_of(query ? *query : kDefaultQuery).options));
+  return !watch.has_failed();
 }
 
 /// Traces an array of rays to an array of answers of answer_size bytes each.

@@ -171,6 +171,10 @@ inline vdouble4 operator+(vdouble4 a, vdouble4 b) { return {simde_mm256_add_pd(a
 inline vdouble4 operator-(vdouble4 a, vdouble4 b) { return {simde_mm256_sub_pd(a.value, b.value)}; }
 inline vdouble4 operator*(vdouble4 a, vdouble4 b) { return {simde_mm256_mul_pd(a.value, b.value)}; }
 inline vdouble4 operator/(vdouble4 a, vdouble4 b) { return {simde_mm256_div_pd(a.value, b.value)}; }
+inline uint32_t greater(vdouble4 a, vdouble4 b) {
+  return static_cast<uint32_t>(
+      simde_mm256_movemask_pd(simde_mm256_cmp_pd(a.value, b.value, SIMDE_CMP_GT_OQ)));
+}
 
 }  // namespace
 }  // namespace KIWAMI_ISA

@@ -3,12 +3,11 @@
 
 #include <numeric>
 
+#include "core/collect_boxes.h"
+
 namespace kiwami {
 
 namespace {
-
-/// Triangles that one task looks at.
-constexpr size_t kBlockSize = 8192;
 
 /// The box of a triangle; false when it can never be hit.
 bool make_primitive(const TriangleMeshView& mesh, uint32_t primitive, BuildPrimitive& made) {
@@ -37,36 +36,23 @@ size_t make_block(const TriangleSource& source, size_t begin, size_t end, BuildP
 
 Array<BuildPrimitive> collect_build_primitives(const TriangleSource& source, size_t count,
                                                Memory& memory, const Parallel& parallel) {
-  Array<BuildPrimitive> primitives(memory, count);
-  Array<size_t> made_counts(memory, (count + kBlockSize - 1) / kBlockSize);
-  parallel.for_blocks(count, kBlockSize, [&](size_t begin, size_t end) {
-    made_counts[begin / kBlockSize] = make_block(source, begin, end, primitives.data() + begin);
-  });
-
-  // Close the gaps that left-out triangles made; mostly there are none.
-  size_t kept = 0;
-  for (size_t block = 0; block < made_counts.size(); ++block) {
-    const BuildPrimitive* made = primitives.data() + block * kBlockSize;
-    if (made != primitives.data() + kept) {
-      std::memmove(primitives.data() + kept, made, made_counts[block] * sizeof(BuildPrimitive));
-    }
-    kept += made_counts[block];
-  }
-  primitives.shrink(kept);
-  return primitives;
+  return collect_blocks(count, memory, parallel,
+                        [&](size_t begin, size_t end, BuildPrimitive* made) {
+                          return make_block(source, begin, end, made);
+                        });
 }
 
 size_t count_hittable(const TriangleSource& source, size_t count, Memory& memory,
                       const Parallel& parallel) {
-  Array<size_t> counts(memory, (count + kBlockSize - 1) / kBlockSize);
-  parallel.for_blocks(count, kBlockSize, [&](size_t begin, size_t end) {
+  Array<size_t> counts(memory, blocks_of(count));
+  parallel.for_blocks(count, kCollectedBlock, [&](size_t begin, size_t end) {
     size_t hittable = 0;
     for (size_t id = begin; id < end; ++id) {
       Vec3f corner[3];
       source.corners_of(static_cast<uint32_t>(id), corner);
       if (can_be_hit(corner)) ++hittable;
     }
-    counts[begin / kBlockSize] = hittable;
+    counts[begin / kCollectedBlock] = hittable;
   });
   return std::accumulate(counts.begin(), counts.end(), size_t{0});
 }

@@ -82,6 +82,8 @@ CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometrie
   tree_.width = width;
   build(parameters, rays, parallel);
   kernels_ = kernels_of(device.isa(), width, tree_.leaf_layout);
+  parts_.build(geometries, count, {parameters, width, memory_, parallel});
+  show_parts();
   describe();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   info_.build_seconds = seconds.count();
@@ -204,13 +206,23 @@ void CommittedScene::show_tree(const Bounds& bounds) {
   }
 }
 
+void CommittedScene::show_parts() {
+  view_.parts = parts_.views();
+  view_.part_count = parts_.count();
+  const Bounds bounds = parts_.bounds();
+  for (int axis = 0; axis < 3; ++axis) {
+    info_.bounds_min[axis] = min_keep(info_.bounds_min[axis], bounds.lower[axis]);
+    info_.bounds_max[axis] = max_keep(info_.bounds_max[axis], bounds.upper[axis]);
+  }
+}
+
 void CommittedScene::describe() {
   info_.struct_size = sizeof(info_);
   info_.bvh_width = tree_.width;
   info_.leaf_width = tree_.leaf_width;
   info_.bvh_depth = tree_.depth;
   info_.triangle_count = triangle_count_;
-  info_.skipped_count = numbered_count_ - triangle_count_;
+  info_.skipped_count = numbered_count_ - triangle_count_ + parts_.skipped_count();
   info_.node_count = tree_.node_count;
   info_.leaf_block_count = tree_.leaf_block_count;
   info_.node_bytes = tree_.node_bytes();
@@ -225,6 +237,7 @@ void CommittedScene::describe() {
 
 void CommittedScene::validate() const {
   verify_wide_tree(tree_, source(), triangle_count_, memory_);
+  parts_.validate(memory_, parallel());
 }
 
 }  // namespace kiwami

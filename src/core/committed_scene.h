@@ -11,6 +11,7 @@
 #include "core/memory.h"
 #include "core/object.h"
 #include "core/scene_parameters.h"
+#include "core/scene_parts.h"
 #include "kernels/kernel_table.h"
 #include "wide/wide_tree.h"
 
@@ -96,6 +97,8 @@ class CommittedScene : public Object<CommittedScene> {
   void build(const SceneParameters& parameters, std::span<const RepresentativeRay> rays,
              const Parallel& parallel);
   void show_tree(const Bounds& bounds);
+  /// Puts the parts into the view, which points to them.
+  void show_parts();
   void describe();
   bool can_skipped_be_hit(const AttachedGeometry* geometries, size_t count) const;
 
@@ -108,6 +111,7 @@ class CommittedScene : public Object<CommittedScene> {
   Array<TriangleMeshView> mesh_views_;
   Array<GeometryRange> ranges_;
   WideTree tree_;
+  SceneParts parts_;
   SceneView view_{};
   size_t numbered_count_ = 0;  ///< triangles of all meshes, skipped ones included
   size_t triangle_count_ = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/error.h"
 #include "core/field_access.h"
 #include "math/float_environment.h"
 
@@ -31,6 +32,8 @@ template <typename Answer, typename Deliver>
 void trace_chunks(const CommittedScene& scene, const Question& question,
                   const kiwami_ray_fields& fields, size_t count, const TraceRequest& request,
                   Deliver&& deliver) {
+  CallbackWatch watch;
+  const QueryOptions options = watch.watched(request.options);
   for_rays(scene.parallel(), count, request.on_calling_thread, [&](size_t begin, size_t end) {
     kiwami_ray rays[kChunkSize];
     Answer answers[kChunkSize];
@@ -40,27 +43,34 @@ void trace_chunks(const CommittedScene& scene, const Question& question,
       question.answer(scene,
                       {reinterpret_cast<const unsigned char*>(rays), sizeof(kiwami_ray),
                        reinterpret_cast<unsigned char*>(answers), sizeof(Answer), chunk},
-                      request.options.from(first));
+                      options.from(first));
       deliver(answers, first, chunk);
     }
   });
+  watch.check();
 }
 
 }  // namespace
 
+void CallbackWatch::check() const {
+  if (!has_failed()) return;
+  throw Error(
+      KIWAMI_ERROR_CALLBACK,
+      "a callback returned a negative number, or more hits than there is room for, expected "
+      "0 or more, and hits that fit");
+}
+
 void trace(const CommittedScene& scene, const Question& question, const RayBatch& batch,
            const TraceRequest& request) {
-  if (is_alone(scene.parallel(), batch.count, request.on_calling_thread)) {
-    const DefaultFloatEnvironment environment;
-    question.answer(scene, batch, request.options);
-    return;
-  }
-  scene.parallel().for_blocks(batch.count, kBlockSize, [&](size_t begin, size_t end) {
+  CallbackWatch watch;
+  const QueryOptions options = watch.watched(request.options);
+  for_rays(scene.parallel(), batch.count, request.on_calling_thread, [&](size_t begin, size_t end) {
     question.answer(scene,
                     {batch.rays + begin * batch.ray_stride, batch.ray_stride,
                      batch.answers + begin * batch.answer_stride, batch.answer_stride, end - begin},
-                    request.options.from(begin));
+                    options.from(begin));
   });
+  watch.check();
 }
 
 void trace_closest_hit(const CommittedScene& scene, const kiwami_ray_fields& rays,

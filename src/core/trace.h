@@ -33,6 +33,22 @@ constexpr Question kClosestHit = {&TraversalKernels::closest_hit, &GeneralKernel
 constexpr Question kAnyHit = {&TraversalKernels::any_hit, &GeneralKernels::any_hit};
 constexpr Question kAllHits = {&TraversalKernels::all_hits, &GeneralKernels::all_hits};
 
+/// Notices when a callback fails while a call is answered.
+class CallbackWatch {
+ public:
+  /// The options, with the watch in them. It must outlive their use.
+  QueryOptions watched(QueryOptions options) {
+    options.failed_callback = &failed_;
+    return options;
+  }
+  bool has_failed() const { return __atomic_load_n(&failed_, __ATOMIC_RELAXED) != 0; }
+  /// Throws Error(CALLBACK) if one has.
+  void check() const;
+
+ private:
+  uint32_t failed_ = 0;
+};
+
 /// How a call is to be answered, beside its rays.
 struct TraceRequest {
   QueryOptions options;

@@ -27,11 +27,12 @@ class RayCounter {
     uint8_t occluded = 0;
     if (any_hit_) {
       const RayBatch batch = {ray, sizeof(kiwami_ray), &occluded, 1, 1};
-      scene_.kernels().any_hit_counted(scene_.view(), batch, counters);
+      run(&TraversalKernels::any_hit_counted, &GeneralKernels::any_hit_counted, batch, counters);
     } else {
       const RayBatch batch = {ray, sizeof(kiwami_ray), reinterpret_cast<unsigned char*>(&hit),
                               sizeof(kiwami_hit), 1};
-      scene_.kernels().closest_hit_counted(scene_.view(), batch, counters);
+      run(&TraversalKernels::closest_hit_counted, &GeneralKernels::closest_hit_counted, batch,
+          counters);
     }
     visits = {static_cast<uint32_t>(counters.node_visits),
               static_cast<uint32_t>(counters.leaf_visits)};
@@ -39,6 +40,15 @@ class RayCounter {
   }
 
  private:
+  void run(CountingKernel TraversalKernels::*plain, CountingGeneralKernel GeneralKernels::*general,
+           const RayBatch& batch, TraversalCounters& counters) const {
+    if (scene_.is_plain()) {
+      (scene_.kernels().*plain)(scene_.view(), batch, counters);
+    } else {
+      (scene_.kernels().general.*general)(scene_.view(), batch, QueryOptions{}, counters);
+    }
+  }
+
   const CommittedScene& scene_;
   bool any_hit_;
 };

@@ -207,6 +207,11 @@ void describe_bvh(const FileReader& reader, kiwami_file_info& info) {
 
 uint64_t save_scene(const Scene& scene, const CommittedScene& committed,
                     const kiwami_save_desc& desc) {
+  if (!committed.is_plain()) {
+    throw Error(KIWAMI_ERROR_INVALID_STATE,
+                "the scene has more than triangle meshes, expected these alone: files hold nothing "
+                "else");
+  }
   Memory& memory = scene.device().memory();
   const SceneRecord record = record_of(committed);
   const Array<ParameterRecord> parameters = records_of(scene.parameters(), memory);

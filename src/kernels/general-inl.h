@@ -6,6 +6,8 @@
 
 #include "kernels/answers-inl.h"
 #include "kernels/general-query-inl.h"
+#include "kernels/shape-leaf-inl.h"
+#include "kernels/user-leaf-inl.h"
 #include "wide/instance_part.h"
 
 namespace kiwami {
@@ -92,6 +94,16 @@ struct GeneralTraversal {
                                 ray,   ready, query.best_bound};
         return visit_tree(part.tree, ready, visitor);
       }
+      case PartKind::kShapes: {
+        ShapeVisitor visitor{query, *static_cast<const ShapeSource*>(part.data), ready,
+                             widen_ray(ray), query.best_bound};
+        return visit_tree(part.tree, ready, visitor);
+      }
+      case PartKind::kUser: {
+        UserVisitor visitor{query, *static_cast<const UserSource*>(part.data), ready, ray,
+                            query.best_bound};
+        return visit_tree(part.tree, ready, visitor);
+      }
     }
     return false;
   }
@@ -136,6 +148,55 @@ struct GeneralTraversal {
       query.set_level(scene, ready, query.reach());
       best_bound = query.best_bound;
       return false;
+    }
+  };
+
+  /// Tests the spheres, discs or curve segments in the leaves of a part.
+  struct ShapeVisitor {
+    static constexpr bool kOrdered = Query::kOrdered;
+
+    Query& query;
+    const ShapeSource& source;
+    const ReadyRay& ready;
+    WideRay<double> ray;
+    float best_bound;
+
+    bool visit_block(const TreeView& tree, ChildReference reference, Probe& probe) {
+      const bool is_done = visit_shapes<N>(
+          source, index_leaf_at<N>(tree.memory, reference), reference.mask(), ready, ray,
+          [&](const ShapeCrossing& crossing) {
+            probe.on_accept_in_leaf(ready, crossing.t);
+            return query.accept(
+                crossing.t, crossing.shape.view->geometry_id, crossing.shape.primitive,
+                [&](kiwami_hit& hit) { describe_crossing(source, ray, crossing, hit); });
+          });
+      best_bound = query.best_bound;
+      return is_done;
+    }
+  };
+
+  /// Asks the caller for the user primitives in the leaves of a part.
+  struct UserVisitor {
+    static constexpr bool kOrdered = Query::kOrdered;
+
+    Query& query;
+    const UserSource& source;
+    const ReadyRay& ready;
+    kiwami_ray ray;
+    float best_bound;
+
+    bool visit_block(const TreeView& tree, ChildReference reference, Probe&) {
+      ray.tmax = query.reach();
+      bool has_failed = false;
+      const bool is_done = visit_user_primitives<N>(
+          source, index_leaf_at<N>(tree.memory, reference), reference.mask(), ray, has_failed,
+          [&](const UserView& view, const kiwami_user_hit& found) {
+            return query.accept(found.t, view.geometry_id, found.primitive_id,
+                                [&](kiwami_hit& hit) { describe_user_hit(found, hit); });
+          });
+      if (has_failed) query.options.report_failed_callback();
+      best_bound = query.best_bound;
+      return is_done;
     }
   };
 };

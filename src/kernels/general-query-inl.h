@@ -97,13 +97,18 @@ struct GeneralClosestHit : GeneralQuery<N> {
                                     {best_path, best.geometry_id, best.primitive_id});
   }
 
-  /// Takes a hit that is_nearer. What describes it is filled in by the caller, after.
-  void take(float t, uint32_t geometry_id, uint32_t primitive_id) {
+  /// Offers a hit of the current level, of which describe(hit) fills in u, v and the normal.
+  /// Returns true where that ends the query.
+  template <typename Describe>
+  bool accept(float t, uint32_t geometry_id, uint32_t primitive_id, Describe describe) {
+    if (!is_nearer(t, geometry_id, primitive_id)) return false;
     best.t = t;
     best.geometry_id = geometry_id;
     best.primitive_id = primitive_id;
     best_path = this->path;
     this->best_bound = scaled_upper(*this->ray, t);
+    describe(best);
+    return false;
   }
 
   template <typename Probe>
@@ -112,12 +117,8 @@ struct GeneralClosestHit : GeneralQuery<N> {
       const float t = crossings.t[lane];
       if (t > best.t) return false;
       const GeometryRange& range = range_of(*this->scene, leaf.id[lane]);
-      const uint32_t primitive_id = leaf.id[lane] - range.first_id;
-      if (is_nearer(t, range.geometry_id, primitive_id)) {
-        take(t, range.geometry_id, primitive_id);
-        describe_triangle(leaf, lane, crossings, best);
-      }
-      return false;
+      return accept(t, range.geometry_id, leaf.id[lane] - range.first_id,
+                    [&](kiwami_hit& hit) { describe_triangle(leaf, lane, crossings, hit); });
     });
     return false;
   }
@@ -158,6 +159,12 @@ struct GeneralAnyHit : GeneralQuery<N> {
 
   float reach() const { return tmax; }
 
+  template <typename Describe>
+  bool accept(float, uint32_t, uint32_t, Describe) {
+    is_hit = true;
+    return true;
+  }
+
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
     is_hit = this->for_each_hit(leaf, lanes, probe, [](int, const Crossings<N>&) { return true; });
@@ -183,6 +190,12 @@ struct GeneralAllHits : GeneralQuery<N> {
   }
 
   float reach() const { return tmax; }
+
+  template <typename Describe>
+  bool accept(float, uint32_t, uint32_t, Describe) {
+    ++count;
+    return false;
+  }
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {

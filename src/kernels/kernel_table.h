@@ -36,6 +36,11 @@ struct TraversalCounters {
 struct QueryOptions {
   unsigned char* instance_paths;  ///< KIWAMI_MAX_INSTANCE_DEPTH uint32_t a ray, or nullptr
   size_t instance_path_stride;
+  uint32_t* failed_callback = nullptr;  ///< set to 1 where a callback fails; shared by threads
+
+  void report_failed_callback() const {
+    if (failed_callback) __atomic_store_n(failed_callback, 1u, __ATOMIC_RELAXED);
+  }
 
   bool is_empty() const { return instance_paths == nullptr; }
 

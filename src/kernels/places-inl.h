@@ -66,14 +66,9 @@ inline bool is_first_place(const SceneView& scene, const ReadyRay& ray, const Le
 template <int N>
 inline void CountingProbe<N>::on_accept(const SceneView& scene, const ReadyRay& ray, uint32_t id,
                                         float t) {
-  ++counters.accepted;
-  bool is_in_box = scene.tree.has_duplicates != 0
-                       ? find_place<N>(scene, ray, id, t).first_place != nullptr
-                       : scaled_upper(ray, t) >= leaf_entry;
-  for (uint32_t i = 0; i < depth; ++i) {
-    is_in_box = is_in_box && scaled_upper(*levels[i].ray, t) >= levels[i].leaf_entry;
-  }
-  if (!is_in_box) ++counters.margin_violations;
+  on_accept(scene.tree.has_duplicates != 0 ? find_place<N>(scene, ray, id, t).first_place != nullptr
+                                           : scaled_upper(ray, t) >= leaf_entry,
+            t);
 }
 
 }  // namespace

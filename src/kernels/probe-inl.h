@@ -17,6 +17,7 @@ struct NoProbe {
   void on_node() {}
   void on_leaf(float) {}
   void on_accept(const SceneView&, const ReadyRay&, uint32_t, float) {}
+  void on_accept_in_leaf(const ReadyRay&, float) {}
   void on_double_fallback() {}
   Level enter(const ReadyRay&) { return {}; }
   void leave(Level) {}
@@ -46,11 +47,24 @@ struct CountingProbe {
     leaf_entry = entry;
   }
   void on_accept(const SceneView& scene, const ReadyRay& ray, uint32_t id, float t);
+  /// Of what stands in one leaf alone.
+  void on_accept_in_leaf(const ReadyRay& ray, float t) {
+    on_accept(scaled_upper(ray, t) >= leaf_entry, t);
+  }
   void on_double_fallback() { ++counters.double_fallbacks; }
   Level enter(const ReadyRay& ray) { return levels[depth++] = {&ray, leaf_entry}; }
   void leave(const Level& level) {
     leaf_entry = level.leaf_entry;
     --depth;
+  }
+
+ private:
+  void on_accept(bool is_in_box, float t) {
+    ++counters.accepted;
+    for (uint32_t i = 0; i < depth; ++i) {
+      is_in_box = is_in_box && scaled_upper(*levels[i].ray, t) >= levels[i].leaf_entry;
+    }
+    if (!is_in_box) ++counters.margin_violations;
   }
 };
 

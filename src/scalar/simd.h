@@ -7,7 +7,7 @@
 //                  back, also from rows at any address
 //   vfloat<4>      also greatest_of_three, first_bits, first_lane: for axes in lanes
 //   Uniform3<N>    3 floats, each to be read as a vector of equal lanes, many times
-//   vdouble4       4 doubles, read from and written to floats
+//   vdouble4       4 doubles, read from and written to floats; comparison to a bit mask
 //
 // min and max return their second operand where a lane is NaN or the two are equal, as the SSE
 // instructions do. multiply_add may or may not be fused: only box tests, which have a margin for
@@ -263,6 +263,9 @@ KIWAMI_INLINE vdouble4 operator*(vdouble4 a, vdouble4 b) {
 }
 KIWAMI_INLINE vdouble4 operator/(vdouble4 a, vdouble4 b) {
   return double_by_double([&](int i) { return a.lane[i] / b.lane[i]; });
+}
+KIWAMI_INLINE uint32_t greater(vdouble4 a, vdouble4 b) {
+  return mask_of<4>([&](int i) { return a.lane[i] > b.lane[i]; });
 }
 
 }  // namespace

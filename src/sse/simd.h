@@ -66,6 +66,11 @@ inline vdouble4 operator*(vdouble4 a, vdouble4 b) {
 inline vdouble4 operator/(vdouble4 a, vdouble4 b) {
   return {simde_mm_div_pd(a.low, b.low), simde_mm_div_pd(a.high, b.high)};
 }
+inline uint32_t greater(vdouble4 a, vdouble4 b) {
+  const int low = simde_mm_movemask_pd(simde_mm_cmpgt_pd(a.low, b.low));
+  const int high = simde_mm_movemask_pd(simde_mm_cmpgt_pd(a.high, b.high));
+  return static_cast<uint32_t>(low | high << 2);
+}
 
 }  // namespace
 }  // namespace KIWAMI_ISA

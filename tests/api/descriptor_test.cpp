@@ -41,6 +41,10 @@ void expect_init(kiwami_result (*init)(Struct*, size_t), size_t minimum) {
 TEST(Descriptor, InitFillsWhatTheCallerHas) {
   expect_init(kiwami_device_desc_init, 16);
   expect_init(kiwami_triangle_mesh_desc_init, 8);
+  expect_init(kiwami_spheres_desc_init, 8);
+  expect_init(kiwami_discs_desc_init, 8);
+  expect_init(kiwami_curves_desc_init, 8);
+  expect_init(kiwami_user_geometry_desc_init, 8);
   expect_init(kiwami_ray_fields_init, 8);
   expect_init(kiwami_hit_fields_init, 8);
   expect_init(kiwami_query_init, 8);

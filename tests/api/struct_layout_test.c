@@ -92,6 +92,78 @@ static void check_lights(void) {
   FIELD(kiwami_light_query, flags, 4);
   FIELD(kiwami_light_query, method, 8);
   FIELD(kiwami_light_query, reserved, 12);
+/* Geometries that are no triangles. */
+static void check_shapes(void) {
+  SIZE(kiwami_spheres_desc, 48);
+  FIELD(kiwami_spheres_desc, struct_size, 0);
+  FIELD(kiwami_spheres_desc, flags, 4);
+  FIELD(kiwami_spheres_desc, points, 8);
+  FIELD(kiwami_spheres_desc, point_offset, 16);
+  FIELD(kiwami_spheres_desc, point_stride, 24);
+  FIELD(kiwami_spheres_desc, sphere_count, 32);
+  FIELD(kiwami_spheres_desc, mask, 40);
+  FIELD(kiwami_spheres_desc, reserved, 44);
+
+  SIZE(kiwami_discs_desc, 72);
+  FIELD(kiwami_discs_desc, struct_size, 0);
+  FIELD(kiwami_discs_desc, flags, 4);
+  FIELD(kiwami_discs_desc, points, 8);
+  FIELD(kiwami_discs_desc, point_offset, 16);
+  FIELD(kiwami_discs_desc, point_stride, 24);
+  FIELD(kiwami_discs_desc, normals, 32);
+  FIELD(kiwami_discs_desc, normal_offset, 40);
+  FIELD(kiwami_discs_desc, normal_stride, 48);
+  FIELD(kiwami_discs_desc, disc_count, 56);
+  FIELD(kiwami_discs_desc, mask, 64);
+  FIELD(kiwami_discs_desc, reserved, 68);
+
+  SIZE(kiwami_curves_desc, 80);
+  FIELD(kiwami_curves_desc, struct_size, 0);
+  FIELD(kiwami_curves_desc, flags, 4);
+  FIELD(kiwami_curves_desc, points, 8);
+  FIELD(kiwami_curves_desc, point_offset, 16);
+  FIELD(kiwami_curves_desc, point_stride, 24);
+  FIELD(kiwami_curves_desc, point_count, 32);
+  FIELD(kiwami_curves_desc, indices, 40);
+  FIELD(kiwami_curves_desc, index_offset, 48);
+  FIELD(kiwami_curves_desc, index_stride, 56);
+  FIELD(kiwami_curves_desc, segment_count, 64);
+  FIELD(kiwami_curves_desc, mask, 72);
+  FIELD(kiwami_curves_desc, reserved, 76);
+}
+
+static void check_user_geometry(void) {
+  SIZE(kiwami_user_hit, 32);
+  FIELD(kiwami_user_hit, t, 0);
+  FIELD(kiwami_user_hit, u, 4);
+  FIELD(kiwami_user_hit, v, 8);
+  FIELD(kiwami_user_hit, normal_x, 12);
+  FIELD(kiwami_user_hit, normal_y, 16);
+  FIELD(kiwami_user_hit, normal_z, 20);
+  FIELD(kiwami_user_hit, primitive_id, 24);
+  FIELD(kiwami_user_hit, reserved, 28);
+
+  SIZE(kiwami_user_intersection, 48);
+  FIELD(kiwami_user_intersection, struct_size, 0);
+  FIELD(kiwami_user_intersection, primitive_count, 4);
+  FIELD(kiwami_user_intersection, primitive_ids, 8);
+  FIELD(kiwami_user_intersection, ray, 16);
+  FIELD(kiwami_user_intersection, geometry_id, 24);
+  FIELD(kiwami_user_intersection, hit_capacity, 28);
+  FIELD(kiwami_user_intersection, hits, 32);
+  FIELD(kiwami_user_intersection, hit_count, 40);
+  FIELD(kiwami_user_intersection, reserved, 44);
+
+  SIZE(kiwami_user_geometry_desc, 56);
+  FIELD(kiwami_user_geometry_desc, struct_size, 0);
+  FIELD(kiwami_user_geometry_desc, flags, 4);
+  FIELD(kiwami_user_geometry_desc, count, 8);
+  FIELD(kiwami_user_geometry_desc, bounds, 16);
+  FIELD(kiwami_user_geometry_desc, intersect, 24);
+  FIELD(kiwami_user_geometry_desc, destroy, 32);
+  FIELD(kiwami_user_geometry_desc, user, 40);
+  FIELD(kiwami_user_geometry_desc, mask, 48);
+  FIELD(kiwami_user_geometry_desc, reserved, 52);
 }
 
 /* The structs that hold pointers: their layout is that of 64-bit machines. */
@@ -449,6 +521,8 @@ int main(void) {
   check_ray_and_hit();
   if (sizeof(void*) == 8) {
     check_device_and_mesh();
+    check_shapes();
+    check_user_geometry();
     check_fields();
     check_bvh_desc();
     check_light_descs();

@@ -72,7 +72,7 @@ class Reorder : public BinaryTreeTest {
     }
     std::vector<uint8_t> answers(asked.size());
     const kiwami::GeometryRange range = {0, 0, ~0u};
-    kiwami::SceneView scene{tree.view, &range, 1, 0};
+    kiwami::SceneView scene{tree.view, &range, 1, 0, 0, nullptr};
     kiwami::TraversalCounters counters{};
     kiwami::kernels_of(KIWAMI_ISA_SCALAR, tree.width)
         .any_hit_counted(scene,

@@ -31,6 +31,15 @@ internal delegate int kiwami_write(IntPtr user, IntPtr data, UIntPtr size);
 [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
 internal delegate long kiwami_read(IntPtr user, IntPtr data, UIntPtr size);
 
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate int kiwami_user_bounds_function(IntPtr user, uint first, uint count, IntPtr bounds);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate int kiwami_user_intersect_function(IntPtr user, IntPtr intersection);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate void kiwami_user_destroy_function(IntPtr user);
+
 [StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_device_desc {
   public uint struct_size;
@@ -505,6 +514,93 @@ internal unsafe struct kiwami_light_query {
   public const int Size = 16;
 }
 
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_spheres_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr points;
+  public ulong point_offset;
+  public ulong point_stride;
+  public ulong sphere_count;
+  public uint mask;
+  public uint reserved;
+  public const int Size = 48;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_discs_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr points;
+  public ulong point_offset;
+  public ulong point_stride;
+  public IntPtr normals;
+  public ulong normal_offset;
+  public ulong normal_stride;
+  public ulong disc_count;
+  public uint mask;
+  public uint reserved;
+  public const int Size = 72;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_curves_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr points;
+  public ulong point_offset;
+  public ulong point_stride;
+  public ulong point_count;
+  public IntPtr indices;
+  public ulong index_offset;
+  public ulong index_stride;
+  public ulong segment_count;
+  public uint mask;
+  public uint reserved;
+  public const int Size = 80;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_user_hit {
+  public float t;
+  public float u;
+  public float v;
+  public float normal_x;
+  public float normal_y;
+  public float normal_z;
+  public uint primitive_id;
+  public uint reserved;
+  public const int Size = 32;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_user_intersection {
+  public uint struct_size;
+  public uint primitive_count;
+  public IntPtr primitive_ids;
+  public IntPtr ray;
+  public uint geometry_id;
+  public uint hit_capacity;
+  public IntPtr hits;
+  public uint hit_count;
+  public uint reserved;
+  public const int Size = 48;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_user_geometry_desc {
+  public uint struct_size;
+  public uint flags;
+  public ulong count;
+  public IntPtr bounds;
+  public IntPtr intersect;
+  public IntPtr destroy;
+  public IntPtr user;
+  public uint mask;
+  public uint reserved;
+  public const int Size = 56;
+}
+
 internal static class Native {
   const string Library = "kiwami";
 
@@ -619,6 +715,8 @@ internal static class Native {
   public const uint KIWAMI_RECEIVER_BOTH_SIDES = 1;
   public const uint KIWAMI_LIGHT_METHOD_TREE = 0;
   public const uint KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
+  public const uint KIWAMI_SHAPES_SHARE_BUFFERS = 1;
+  public const uint KIWAMI_USER_HITS_PER_PRIMITIVE = 4;
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern uint kiwami_version();
@@ -874,5 +972,29 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_light_pdf(IntPtr tree, IntPtr receivers, UIntPtr receiver_stride, IntPtr lights, UIntPtr light_stride, IntPtr probabilities, UIntPtr probability_stride, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_spheres_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_discs_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_curves_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_spheres_create(IntPtr device, IntPtr desc, IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_discs_create(IntPtr device, IntPtr desc, IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_curves_create(IntPtr device, IntPtr desc, IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_user_geometry_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_user_geometry_create(IntPtr device, IntPtr desc, IntPtr geometry);
 }
 }

@@ -115,6 +115,8 @@ exports.constants = {
   KIWAMI_RECEIVER_BOTH_SIDES: 1,
   KIWAMI_LIGHT_METHOD_TREE: 0,
   KIWAMI_LIGHT_QUERY_CALLING_THREAD: 1,
+  KIWAMI_SHAPES_SHARE_BUFFERS: 1,
+  KIWAMI_USER_HITS_PER_PRIMITIVE: 4,
 };
 
 exports.callbacks = [
@@ -126,6 +128,9 @@ exports.callbacks = [
   'int32_t kiwami_progress(void * user, double fraction)',
   'int32_t kiwami_write(void * user, void * data, size_t size)',
   'int64_t kiwami_read(void * user, void * data, size_t size)',
+  'int32_t kiwami_user_bounds_function(void * user, uint32_t first, uint32_t count, void * bounds)',
+  'int32_t kiwami_user_intersect_function(void * user, void * intersection)',
+  'void kiwami_user_destroy_function(void * user)',
 ];
 
 exports.functions = [
@@ -214,6 +219,14 @@ exports.functions = [
   'int32_t kiwami_light_tree_get_info(void * tree, void * info)',
   'int32_t kiwami_light_sample(void * tree, void * receivers, size_t receiver_stride, void * choices, size_t choice_stride, size_t count, void * query)',
   'int32_t kiwami_light_pdf(void * tree, void * receivers, size_t receiver_stride, void * lights, size_t light_stride, void * probabilities, size_t probability_stride, size_t count, void * query)',
+  'int32_t kiwami_spheres_desc_init(void * desc, size_t size)',
+  'int32_t kiwami_discs_desc_init(void * desc, size_t size)',
+  'int32_t kiwami_curves_desc_init(void * desc, size_t size)',
+  'int32_t kiwami_spheres_create(void * device, void * desc, void * geometry)',
+  'int32_t kiwami_discs_create(void * device, void * desc, void * geometry)',
+  'int32_t kiwami_curves_create(void * device, void * desc, void * geometry)',
+  'int32_t kiwami_user_geometry_desc_init(void * desc, size_t size)',
+  'int32_t kiwami_user_geometry_create(void * device, void * desc, void * geometry)',
 ];
 
 exports.structs = {
@@ -688,6 +701,93 @@ exports.structs = {
       struct_size: 'uint32_t',
       flags: 'uint32_t',
       method: 'uint32_t',
+      reserved: 'uint32_t',
+    },
+  },
+  kiwami_spheres_desc: {
+    size: 48,
+    fields: {
+      struct_size: 'uint32_t',
+      flags: 'uint32_t',
+      points: 'void *',
+      point_offset: 'uint64_t',
+      point_stride: 'uint64_t',
+      sphere_count: 'uint64_t',
+      mask: 'uint32_t',
+      reserved: 'uint32_t',
+    },
+  },
+  kiwami_discs_desc: {
+    size: 72,
+    fields: {
+      struct_size: 'uint32_t',
+      flags: 'uint32_t',
+      points: 'void *',
+      point_offset: 'uint64_t',
+      point_stride: 'uint64_t',
+      normals: 'void *',
+      normal_offset: 'uint64_t',
+      normal_stride: 'uint64_t',
+      disc_count: 'uint64_t',
+      mask: 'uint32_t',
+      reserved: 'uint32_t',
+    },
+  },
+  kiwami_curves_desc: {
+    size: 80,
+    fields: {
+      struct_size: 'uint32_t',
+      flags: 'uint32_t',
+      points: 'void *',
+      point_offset: 'uint64_t',
+      point_stride: 'uint64_t',
+      point_count: 'uint64_t',
+      indices: 'void *',
+      index_offset: 'uint64_t',
+      index_stride: 'uint64_t',
+      segment_count: 'uint64_t',
+      mask: 'uint32_t',
+      reserved: 'uint32_t',
+    },
+  },
+  kiwami_user_hit: {
+    size: 32,
+    fields: {
+      t: 'float',
+      u: 'float',
+      v: 'float',
+      normal_x: 'float',
+      normal_y: 'float',
+      normal_z: 'float',
+      primitive_id: 'uint32_t',
+      reserved: 'uint32_t',
+    },
+  },
+  kiwami_user_intersection: {
+    size: 48,
+    fields: {
+      struct_size: 'uint32_t',
+      primitive_count: 'uint32_t',
+      primitive_ids: 'void *',
+      ray: 'void *',
+      geometry_id: 'uint32_t',
+      hit_capacity: 'uint32_t',
+      hits: 'void *',
+      hit_count: 'uint32_t',
+      reserved: 'uint32_t',
+    },
+  },
+  kiwami_user_geometry_desc: {
+    size: 56,
+    fields: {
+      struct_size: 'uint32_t',
+      flags: 'uint32_t',
+      count: 'uint64_t',
+      bounds: 'void *',
+      intersect: 'void *',
+      destroy: 'void *',
+      user: 'void *',
+      mask: 'uint32_t',
       reserved: 'uint32_t',
     },
   },

@@ -115,6 +115,8 @@ KIWAMI_LIGHT_BUILDER_OCTANTS = 1
 KIWAMI_RECEIVER_BOTH_SIDES = 1
 KIWAMI_LIGHT_METHOD_TREE = 0
 KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1
+KIWAMI_SHAPES_SHARE_BUFFERS = 1
+KIWAMI_USER_HITS_PER_PRIMITIVE = 4
 
 kiwami_parallel_task = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)
 
@@ -148,6 +150,22 @@ kiwami_progress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_dou
 kiwami_write = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)
 
 kiwami_read = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)
+
+kiwami_user_bounds_function = ctypes.CFUNCTYPE(
+    ctypes.c_int32,
+    ctypes.c_void_p,
+    ctypes.c_uint32,
+    ctypes.c_uint32,
+    ctypes.c_void_p,
+)
+
+kiwami_user_intersect_function = ctypes.CFUNCTYPE(
+    ctypes.c_int32,
+    ctypes.c_void_p,
+    ctypes.c_void_p,
+)
+
+kiwami_user_destroy_function = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
 
 
 class kiwami_device_desc(ctypes.Structure):
@@ -624,6 +642,93 @@ class kiwami_light_query(ctypes.Structure):
     ]
 
 
+class kiwami_spheres_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("points", ctypes.c_void_p),
+        ("point_offset", ctypes.c_uint64),
+        ("point_stride", ctypes.c_uint64),
+        ("sphere_count", ctypes.c_uint64),
+        ("mask", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
+class kiwami_discs_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("points", ctypes.c_void_p),
+        ("point_offset", ctypes.c_uint64),
+        ("point_stride", ctypes.c_uint64),
+        ("normals", ctypes.c_void_p),
+        ("normal_offset", ctypes.c_uint64),
+        ("normal_stride", ctypes.c_uint64),
+        ("disc_count", ctypes.c_uint64),
+        ("mask", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
+class kiwami_curves_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("points", ctypes.c_void_p),
+        ("point_offset", ctypes.c_uint64),
+        ("point_stride", ctypes.c_uint64),
+        ("point_count", ctypes.c_uint64),
+        ("indices", ctypes.c_void_p),
+        ("index_offset", ctypes.c_uint64),
+        ("index_stride", ctypes.c_uint64),
+        ("segment_count", ctypes.c_uint64),
+        ("mask", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
+class kiwami_user_hit(ctypes.Structure):
+    _fields_ = [
+        ("t", ctypes.c_float),
+        ("u", ctypes.c_float),
+        ("v", ctypes.c_float),
+        ("normal_x", ctypes.c_float),
+        ("normal_y", ctypes.c_float),
+        ("normal_z", ctypes.c_float),
+        ("primitive_id", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
+class kiwami_user_intersection(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("primitive_count", ctypes.c_uint32),
+        ("primitive_ids", ctypes.c_void_p),
+        ("ray", ctypes.c_void_p),
+        ("geometry_id", ctypes.c_uint32),
+        ("hit_capacity", ctypes.c_uint32),
+        ("hits", ctypes.c_void_p),
+        ("hit_count", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
+class kiwami_user_geometry_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("count", ctypes.c_uint64),
+        ("bounds", ctypes.c_void_p),
+        ("intersect", ctypes.c_void_p),
+        ("destroy", ctypes.c_void_p),
+        ("user", ctypes.c_void_p),
+        ("mask", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
 SIZES = {
     kiwami_device_desc: 80,
     kiwami_device_info: 32,
@@ -662,6 +767,12 @@ SIZES = {
     kiwami_light_choice: 24,
     kiwami_light_name: 8,
     kiwami_light_query: 16,
+    kiwami_spheres_desc: 48,
+    kiwami_discs_desc: 72,
+    kiwami_curves_desc: 80,
+    kiwami_user_hit: 32,
+    kiwami_user_intersection: 48,
+    kiwami_user_geometry_desc: 56,
 }
 
 
@@ -1029,5 +1140,25 @@ def declare(library):
         ctypes.c_void_p,
         ctypes.c_size_t,
         ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_spheres_desc_init.restype = ctypes.c_int32
+    library.kiwami_spheres_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_discs_desc_init.restype = ctypes.c_int32
+    library.kiwami_discs_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_curves_desc_init.restype = ctypes.c_int32
+    library.kiwami_curves_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_spheres_create.restype = ctypes.c_int32
+    library.kiwami_spheres_create.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_discs_create.restype = ctypes.c_int32
+    library.kiwami_discs_create.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_curves_create.restype = ctypes.c_int32
+    library.kiwami_curves_create.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_user_geometry_desc_init.restype = ctypes.c_int32
+    library.kiwami_user_geometry_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_user_geometry_create.restype = ctypes.c_int32
+    library.kiwami_user_geometry_create.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
         ctypes.c_void_p,
     ]

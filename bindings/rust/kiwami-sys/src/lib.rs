@@ -119,6 +119,8 @@ pub const KIWAMI_LIGHT_BUILDER_OCTANTS: u32 = 1;
 pub const KIWAMI_RECEIVER_BOTH_SIDES: u32 = 1;
 pub const KIWAMI_LIGHT_METHOD_TREE: u32 = 0;
 pub const KIWAMI_LIGHT_QUERY_CALLING_THREAD: u32 = 1;
+pub const KIWAMI_SHAPES_SHARE_BUFFERS: u32 = 1;
+pub const KIWAMI_USER_HITS_PER_PRIMITIVE: u32 = 4;
 
 #[repr(C)]
 pub struct kiwami_bvh {
@@ -168,6 +170,15 @@ pub type kiwami_write =
 
 pub type kiwami_read =
     Option<unsafe extern "C" fn(user: *mut c_void, data: *mut c_void, size: usize) -> i64>;
+
+pub type kiwami_user_bounds_function =
+    Option<unsafe extern "C" fn(user: *mut c_void, first: u32, count: u32, bounds: *mut f32) -> i32>;
+
+pub type kiwami_user_intersect_function =
+    Option<unsafe extern "C" fn(user: *mut c_void, intersection: *mut kiwami_user_intersection) -> i32>;
+
+pub type kiwami_user_destroy_function =
+    Option<unsafe extern "C" fn(user: *mut c_void)>;
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -680,6 +691,99 @@ pub struct kiwami_light_query {
 }
 const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 16);
 
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_spheres_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub points: *const c_void,
+    pub point_offset: u64,
+    pub point_stride: u64,
+    pub sphere_count: u64,
+    pub mask: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_spheres_desc>() == 48);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_discs_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub points: *const c_void,
+    pub point_offset: u64,
+    pub point_stride: u64,
+    pub normals: *const c_void,
+    pub normal_offset: u64,
+    pub normal_stride: u64,
+    pub disc_count: u64,
+    pub mask: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_discs_desc>() == 72);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_curves_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub points: *const c_void,
+    pub point_offset: u64,
+    pub point_stride: u64,
+    pub point_count: u64,
+    pub indices: *const c_void,
+    pub index_offset: u64,
+    pub index_stride: u64,
+    pub segment_count: u64,
+    pub mask: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_curves_desc>() == 80);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_user_hit {
+    pub t: f32,
+    pub u: f32,
+    pub v: f32,
+    pub normal_x: f32,
+    pub normal_y: f32,
+    pub normal_z: f32,
+    pub primitive_id: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_user_hit>() == 32);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_user_intersection {
+    pub struct_size: u32,
+    pub primitive_count: u32,
+    pub primitive_ids: *const u32,
+    pub ray: *const kiwami_ray,
+    pub geometry_id: u32,
+    pub hit_capacity: u32,
+    pub hits: *mut kiwami_user_hit,
+    pub hit_count: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_user_intersection>() == 48);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_user_geometry_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub count: u64,
+    pub bounds: kiwami_user_bounds_function,
+    pub intersect: kiwami_user_intersect_function,
+    pub destroy: kiwami_user_destroy_function,
+    pub user: *mut c_void,
+    pub mask: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_user_geometry_desc>() == 56);
+
 extern "C" {
     pub fn kiwami_version() -> u32;
     pub fn kiwami_abi_version() -> u32;
@@ -766,4 +870,12 @@ extern "C" {
     pub fn kiwami_light_tree_get_info(tree: *const kiwami_light_tree, info: *mut kiwami_light_tree_info) -> kiwami_result;
     pub fn kiwami_light_sample(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, choices: *mut kiwami_light_choice, choice_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
     pub fn kiwami_light_pdf(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, lights: *const kiwami_light_name, light_stride: usize, probabilities: *mut f32, probability_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
+    pub fn kiwami_spheres_desc_init(desc: *mut kiwami_spheres_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_discs_desc_init(desc: *mut kiwami_discs_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_curves_desc_init(desc: *mut kiwami_curves_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_spheres_create(device: *mut kiwami_device, desc: *const kiwami_spheres_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
+    pub fn kiwami_discs_create(device: *mut kiwami_device, desc: *const kiwami_discs_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
+    pub fn kiwami_curves_create(device: *mut kiwami_device, desc: *const kiwami_curves_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
+    pub fn kiwami_user_geometry_desc_init(desc: *mut kiwami_user_geometry_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_user_geometry_create(device: *mut kiwami_device, desc: *const kiwami_user_geometry_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
 }

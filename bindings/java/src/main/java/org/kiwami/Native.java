@@ -120,6 +120,8 @@ final class Native {
   static final int KIWAMI_RECEIVER_BOTH_SIDES = 1;
   static final int KIWAMI_LIGHT_METHOD_TREE = 0;
   static final int KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
+  static final int KIWAMI_SHAPES_SHARE_BUFFERS = 1;
+  static final int KIWAMI_USER_HITS_PER_PRIMITIVE = 4;
 
   /** Offsets of kiwami_device_desc. */
   static final class DeviceDesc {
@@ -595,6 +597,93 @@ final class Native {
     static final int RESERVED = 12;
   }
 
+  /** Offsets of kiwami_spheres_desc. */
+  static final class SpheresDesc {
+    static final int STRUCT_BYTES = 48;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int POINTS = 8;
+    static final int POINT_OFFSET = 16;
+    static final int POINT_STRIDE = 24;
+    static final int SPHERE_COUNT = 32;
+    static final int MASK = 40;
+    static final int RESERVED = 44;
+  }
+
+  /** Offsets of kiwami_discs_desc. */
+  static final class DiscsDesc {
+    static final int STRUCT_BYTES = 72;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int POINTS = 8;
+    static final int POINT_OFFSET = 16;
+    static final int POINT_STRIDE = 24;
+    static final int NORMALS = 32;
+    static final int NORMAL_OFFSET = 40;
+    static final int NORMAL_STRIDE = 48;
+    static final int DISC_COUNT = 56;
+    static final int MASK = 64;
+    static final int RESERVED = 68;
+  }
+
+  /** Offsets of kiwami_curves_desc. */
+  static final class CurvesDesc {
+    static final int STRUCT_BYTES = 80;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int POINTS = 8;
+    static final int POINT_OFFSET = 16;
+    static final int POINT_STRIDE = 24;
+    static final int POINT_COUNT = 32;
+    static final int INDICES = 40;
+    static final int INDEX_OFFSET = 48;
+    static final int INDEX_STRIDE = 56;
+    static final int SEGMENT_COUNT = 64;
+    static final int MASK = 72;
+    static final int RESERVED = 76;
+  }
+
+  /** Offsets of kiwami_user_hit. */
+  static final class UserHit {
+    static final int STRUCT_BYTES = 32;
+    static final int T = 0;
+    static final int U = 4;
+    static final int V = 8;
+    static final int NORMAL_X = 12;
+    static final int NORMAL_Y = 16;
+    static final int NORMAL_Z = 20;
+    static final int PRIMITIVE_ID = 24;
+    static final int RESERVED = 28;
+  }
+
+  /** Offsets of kiwami_user_intersection. */
+  static final class UserIntersection {
+    static final int STRUCT_BYTES = 48;
+    static final int STRUCT_SIZE = 0;
+    static final int PRIMITIVE_COUNT = 4;
+    static final int PRIMITIVE_IDS = 8;
+    static final int RAY = 16;
+    static final int GEOMETRY_ID = 24;
+    static final int HIT_CAPACITY = 28;
+    static final int HITS = 32;
+    static final int HIT_COUNT = 40;
+    static final int RESERVED = 44;
+  }
+
+  /** Offsets of kiwami_user_geometry_desc. */
+  static final class UserGeometryDesc {
+    static final int STRUCT_BYTES = 56;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int COUNT = 8;
+    static final int BOUNDS = 16;
+    static final int INTERSECT = 24;
+    static final int DESTROY = 32;
+    static final int USER = 40;
+    static final int MASK = 48;
+    static final int RESERVED = 52;
+  }
+
   static {
     com.sun.jna.Native.register(LibraryFile.path());
   }
@@ -768,4 +857,20 @@ final class Native {
   static native int kiwami_light_sample(Pointer tree, Pointer receivers, long receiverStride, Pointer choices, long choiceStride, long count, Pointer query);
 
   static native int kiwami_light_pdf(Pointer tree, Pointer receivers, long receiverStride, Pointer lights, long lightStride, Pointer probabilities, long probabilityStride, long count, Pointer query);
+
+  static native int kiwami_spheres_desc_init(Pointer desc, long size);
+
+  static native int kiwami_discs_desc_init(Pointer desc, long size);
+
+  static native int kiwami_curves_desc_init(Pointer desc, long size);
+
+  static native int kiwami_spheres_create(Pointer device, Pointer desc, Pointer geometry);
+
+  static native int kiwami_discs_create(Pointer device, Pointer desc, Pointer geometry);
+
+  static native int kiwami_curves_create(Pointer device, Pointer desc, Pointer geometry);
+
+  static native int kiwami_user_geometry_desc_init(Pointer desc, long size);
+
+  static native int kiwami_user_geometry_create(Pointer device, Pointer desc, Pointer geometry);
 }

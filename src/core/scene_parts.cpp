@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene_parts.h"
+
+namespace kiwami {
+
+void SceneParts::build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan) {
+  for (ShapePart& part : shapes_) {
+    part.build(geometries, count, plan);
+    add(part.tree(), part.view());
+  }
+  user_.build(geometries, count, plan);
+  add(user_.tree(), user_.view());
+}
+
+void SceneParts::add(const PartTree& tree, const ScenePart& view) {
+  if (!tree.is_empty()) views_[count_++] = view;
+}
+
+Bounds SceneParts::bounds() const {
+  Bounds bounds = user_.tree().bounds;
+  for (const ShapePart& part : shapes_) bounds.extend(part.tree().bounds);
+  return bounds;
+}
+
+uint64_t SceneParts::primitive_count() const {
+  uint64_t count = user_.tree().primitive_count;
+  for (const ShapePart& part : shapes_) count += part.tree().primitive_count;
+  return count;
+}
+
+uint64_t SceneParts::skipped_count() const {
+  uint64_t count = user_.numbered_count();
+  for (const ShapePart& part : shapes_) count += part.numbered_count();
+  return count - primitive_count();
+}
+
+void SceneParts::validate(Memory& memory, const Parallel& parallel) const {
+  for (const ShapePart& part : shapes_) part.validate(memory, parallel);
+}
+
+}  // namespace kiwami

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/shape_part.h"
+#include "core/user_geometry.h"
+
+namespace kiwami {
+
+/// What a scene holds beside static triangles, each kind with a tree of its own.
+class SceneParts {
+ public:
+  SceneParts() = default;
+  SceneParts(const SceneParts&) = delete;
+  SceneParts& operator=(const SceneParts&) = delete;
+
+  /// Of count geometries by rising geometry_id. Throws Error.
+  void build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan);
+
+  /// Those that are not empty; they point into this object.
+  const ScenePart* views() const { return views_; }
+  uint32_t count() const { return count_; }
+
+  /// The box of them all.
+  Bounds bounds() const;
+  /// Primitives that can be hit, and that were skipped.
+  uint64_t primitive_count() const;
+  uint64_t skipped_count() const;
+
+  /// Checks every invariant of the trees whose boxes are known; throws Error(VALIDATION).
+  void validate(Memory& memory, const Parallel& parallel) const;
+
+ private:
+  void add(const PartTree& tree, const ScenePart& view);
+
+  ShapePart shapes_[3] = {ShapePart(ShapeKind::kSphere), ShapePart(ShapeKind::kDisc),
+                          ShapePart(ShapeKind::kCurve)};
+  UserPart user_;
+  ScenePart views_[4];
+  uint32_t count_ = 0;
+};
+
+}  // namespace kiwami

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+// One ray against the shapes of a leaf block: four at a time where the ray misses most, one by one
+// where it may not.
+#pragma once
+
+#include "kernels/ray-inl.h"
+#include "kernels/shape-inl.h"
+#include "wide/wide_bvh.h"
+
+namespace kiwami {
+namespace KIWAMI_ISA {
+namespace {
+
+/// A shape, and which number it has in its geometry.
+struct ShapePlace {
+  const ShapeView* view;
+  uint32_t primitive;
+};
+
+inline ShapePlace place_of(const ShapeSource& source, uint32_t id) {
+  uint32_t low = 0, high = source.view_count;
+  while (high - low > 1) {
+    const uint32_t middle = low + (high - low) / 2;
+    (source.views[middle].first_id <= id ? low : high) = middle;
+  }
+  const ShapeView& view = source.views[low];
+  return {&view, id - view.first_id};
+}
+
+/// A point with its radius, and a normal, as they lie in the caller's memory.
+struct RawPoint {
+  float x, y, z, radius;
+};
+struct RawNormal {
+  float x, y, z;
+};
+
+inline RawPoint point_at(const ShapeView& view, size_t index) {
+  RawPoint point;
+  __builtin_memcpy(&point, view.points + index * view.point_stride, sizeof point);
+  return point;
+}
+inline RawNormal normal_at(const ShapeView& view, size_t index) {
+  RawNormal normal;
+  __builtin_memcpy(&normal, view.normals + index * view.normal_stride, sizeof normal);
+  return normal;
+}
+inline size_t first_point_of(const ShapePlace& segment) {
+  if (!segment.view->indices) return segment.primitive;
+  uint32_t index;
+  __builtin_memcpy(&index, segment.view->indices + segment.primitive * segment.view->index_stride,
+                   sizeof index);
+  return index;
+}
+
+inline Triple<double> centre_of(const RawPoint& point) { return {point.x, point.y, point.z}; }
+inline Triple<double> triple_of(const RawNormal& normal) { return {normal.x, normal.y, normal.z}; }
+inline Segment<double> segment_of(const RawPoint& a, const RawPoint& b) {
+  return {{centre_of(a), centre_of(b)}, {a.radius, b.radius}};
+}
+
+/// The points of up to N shapes, by lane. Lanes that are not asked for hold those of another.
+template <int N>
+struct PointLanes {
+  float x[N], y[N], z[N], radius[N];
+
+  void set(int lane, const RawPoint& point) {
+    x[lane] = point.x;
+    y[lane] = point.y;
+    z[lane] = point.z;
+    radius[lane] = point.radius;
+  }
+  Triple<vdouble4> centres(int first) const {
+    return {load_widened(x + first), load_widened(y + first), load_widened(z + first)};
+  }
+};
+
+/// Which of four numbers, first on, are positive.
+inline uint32_t positive_lanes(vdouble4 a, int first) {
+  return greater(a, broadcast_double(0.0)) << first;
+}
+
+/// One crossing of a ray and a shape.
+struct ShapeCrossing {
+  float t;
+  bool is_entry;   ///< for discs: seen from the side that the normal points to
+  double exact_t;  ///< before it was rounded
+  double s;        ///< of a curve segment: where along it
+  ShapePlace shape;
+};
+
+/// The next greater float.
+inline float next_float(float value) {
+  int32_t bits;
+  __builtin_memcpy(&bits, &value, sizeof bits);
+  bits = value == 0.0f ? 1 : bits < 0 ? bits - 1 : bits + 1;
+  __builtin_memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/// Hands the crossings that the ray may meet to accept, by masks, sides and distance.
+template <typename Accept>
+struct ShapeSieve {
+  const ReadyRay& ray;
+  const WideRay<double>& wide;
+  Accept& accept;
+
+  bool is_masked(const ShapePlace& shape) const { return (shape.view->mask & ray.mask) == 0; }
+
+  /// Returns true where accept ends it all.
+  bool pass(const ShapeCrossing& crossing) const {
+    if (!(ray.tmin <= crossing.t && crossing.t <= ray.tmax)) return false;
+    const uint32_t side =
+        crossing.is_entry ? KIWAMI_RAY_CULL_FRONT_FACES : KIWAMI_RAY_CULL_BACK_FACES;
+    return (ray.flags & side) == 0 && accept(crossing);
+  }
+
+  /// An interval whose ends round to the same float keeps its length of one float: a ray that
+  /// enters leaves, and two crossings are told apart by their distance.
+  bool pass(const SegmentInterval& interval, const ShapePlace& shape) const {
+    const float entry = static_cast<float>(interval.entry.t);
+    float exit = static_cast<float>(interval.exit.t);
+    if (exit == entry) exit = next_float(exit);
+    return pass({entry, true, interval.entry.t, interval.entry.s, shape}) ||
+           pass({exit, false, interval.exit.t, interval.exit.s, shape});
+  }
+};
+
+template <int N, typename Sieve>
+inline bool visit_spheres(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
+                          const Sieve& sieve) {
+  PointLanes<N> points;
+  ShapePlace places[N];
+  for (int lane = 0; lane < N; ++lane) {
+    const bool is_own = ((lanes >> lane) & 1u) != 0;
+    places[lane] = place_of(source, block.id[is_own ? lane : __builtin_ctz(lanes)]);
+    points.set(lane, point_at(*places[lane].view, places[lane].primitive));
+  }
+  const WideRay<vdouble4> ray = spread_ray(sieve.wide);
+  double middle[N], squared_half[N];
+  uint32_t met = 0;
+  for (int first = 0; first < N; first += 4) {
+    if (((lanes >> first) & 0xFu) == 0) continue;
+    const Passage<vdouble4> passage =
+        pass_sphere(ray, ray.origin - points.centres(first), load_widened(points.radius + first));
+    store(middle + first, passage.middle);
+    store(squared_half + first, passage.squared_half);
+    met |= positive_lanes(passage.squared_half, first);
+  }
+  for (met &= lanes; met; met &= met - 1) {
+    const int lane = __builtin_ctz(met);
+    if (sieve.is_masked(places[lane])) continue;
+    SegmentInterval interval;
+    interval.add({middle[lane], squared_half[lane]}, 0.0);
+    if (sieve.pass(interval, places[lane])) return true;
+  }
+  return false;
+}
+
+template <int N, typename Sieve>
+inline bool visit_discs(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
+                        const Sieve& sieve) {
+  for (; lanes; lanes &= lanes - 1) {
+    const ShapePlace place = place_of(source, block.id[__builtin_ctz(lanes)]);
+    if (sieve.is_masked(place)) continue;
+    const RawPoint point = point_at(*place.view, place.primitive);
+    const PlaneMeeting<double> meeting =
+        meet_plane(sieve.wide, sieve.wide.origin - centre_of(point),
+                   triple_of(normal_at(*place.view, place.primitive)));
+    const double radius = point.radius;
+    if (!(meeting.squared_distance < radius * radius)) continue;
+    const ShapeCrossing crossing = {static_cast<float>(meeting.t), meeting.facing < 0.0, meeting.t,
+                                    0.0, place};
+    if (sieve.pass(crossing)) return true;
+  }
+  return false;
+}
+
+/// Which of four segments, first on, the ray may meet: where none of their spheres is met and the
+/// cone neither is nor is left to the careful form, it does not.
+template <int N>
+inline uint32_t may_meet(const WideRay<vdouble4>& ray, const PointLanes<N> (&points)[2],
+                         int first) {
+  const Segment<vdouble4> segment = {
+      {points[0].centres(first), points[1].centres(first)},
+      {load_widened(points[0].radius + first), load_widened(points[1].radius + first)}};
+  const Triple<vdouble4> offset = ray.origin - segment.centre[0];
+  const Passage<vdouble4> begin = pass_sphere(ray, offset, segment.radius[0]);
+  const Passage<vdouble4> end = pass_sphere(ray, ray.origin - segment.centre[1], segment.radius[1]);
+  const ConeFrame<vdouble4> cone = frame_cone(ray, segment, offset, begin.middle, end.middle);
+  const Passage<vdouble4> side = pass_cone(cone, ray, segment.radius[0]);
+  const uint32_t usual =
+      greater(cone.leading, broadcast_double(kLeastLeading) * (cone.slope * ray.squared));
+  return (positive_lanes(begin.squared_half, 0) | positive_lanes(end.squared_half, 0) |
+          positive_lanes(side.squared_half, 0) | (usual ^ 0xFu))
+         << first;
+}
+
+template <int N, typename Sieve>
+inline bool visit_curves(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
+                         const Sieve& sieve) {
+  PointLanes<N> points[2];
+  ShapePlace places[N];
+  for (int lane = 0; lane < N; ++lane) {
+    const bool is_own = ((lanes >> lane) & 1u) != 0;
+    places[lane] = place_of(source, block.id[is_own ? lane : __builtin_ctz(lanes)]);
+    const size_t index = first_point_of(places[lane]);
+    points[0].set(lane, point_at(*places[lane].view, index));
+    points[1].set(lane, point_at(*places[lane].view, index + 1));
+  }
+  const WideRay<vdouble4> ray = spread_ray(sieve.wide);
+  uint32_t met = 0;
+  for (int first = 0; first < N; first += 4) {
+    if (((lanes >> first) & 0xFu) != 0) met |= may_meet<N>(ray, points, first);
+  }
+  for (met &= lanes; met; met &= met - 1) {
+    const int lane = __builtin_ctz(met);
+    if (sieve.is_masked(places[lane])) continue;
+    const auto raw = [&](int k) {
+      return RawPoint{points[k].x[lane], points[k].y[lane], points[k].z[lane],
+                      points[k].radius[lane]};
+    };
+    const SegmentInterval interval = cross_segment(sieve.wide, segment_of(raw(0), raw(1)));
+    if (!interval.is_empty && sieve.pass(interval, places[lane])) return true;
+  }
+  return false;
+}
+
+inline WideRay<double> widen_ray(const UnalignedRay& ray) {
+  const float origin[3] = {ray.origin_x, ray.origin_y, ray.origin_z};
+  const float direction[3] = {ray.direction_x, ray.direction_y, ray.direction_z};
+  return widen_ray(origin, direction);
+}
+
+/// Calls accept(crossing) for each crossing of the lanes' shapes that the ray meets, until accept
+/// returns true; then returns true.
+template <int N, typename Accept>
+inline bool visit_shapes(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
+                         const ReadyRay& ray, const WideRay<double>& wide, Accept accept) {
+  const ShapeSieve<Accept> sieve{ray, wide, accept};
+  if (source.kind == ShapeKind::kSphere) return visit_spheres<N>(source, block, lanes, sieve);
+  if (source.kind == ShapeKind::kDisc) return visit_discs<N>(source, block, lanes, sieve);
+  return visit_curves<N>(source, block, lanes, sieve);
+}
+
+/// Fills in what a hit says of the shape: u, v and the normal, each rounded once.
+inline void describe_crossing(const ShapeSource& source, const WideRay<double>& ray,
+                              const ShapeCrossing& crossing, kiwami_hit& hit) {
+  const ShapeView& view = *crossing.shape.view;
+  const size_t index =
+      source.kind == ShapeKind::kCurve ? first_point_of(crossing.shape) : crossing.shape.primitive;
+  const RawPoint point = point_at(view, index);
+  Triple<double> normal = (ray.origin - centre_of(point)) + crossing.exact_t * ray.direction;
+  hit.u = hit.v = 0.0f;
+  if (source.kind == ShapeKind::kDisc) {
+    const double radius = point.radius;
+    hit.u = static_cast<float>(dot(normal, normal) / (radius * radius));
+    normal = triple_of(normal_at(view, index));
+  } else if (source.kind == ShapeKind::kCurve) {
+    hit.u = static_cast<float>(crossing.s);
+    normal = normal - crossing.s * (centre_of(point_at(view, index + 1)) - centre_of(point));
+  }
+  hit.normal_x = static_cast<float>(normal.x);
+  hit.normal_y = static_cast<float>(normal.y);
+  hit.normal_z = static_cast<float>(normal.z);
+}
+
+}  // namespace
+}  // namespace KIWAMI_ISA
+}  // namespace kiwami
