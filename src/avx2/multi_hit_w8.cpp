@@ -7,7 +7,7 @@
 namespace kiwami {
 namespace KIWAMI_ISA {
 
-MultiHitKernel multi_hit_w8() { return multi_hit<8>; }
+MultiHitKernels multi_hit_w8() { return multi_hit_kernels<8>(); }
 
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami

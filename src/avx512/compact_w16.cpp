@@ -9,8 +9,8 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 
 TraversalKernels compact_w16() {
-  return joined(kernels_of_width<16, GatheredLeaves<16>>(), multi_hit<16, GatheredLeaves<16>>,
-                general_w16());
+  return joined(kernels_of_width<16, GatheredLeaves<16>>(),
+                multi_hit_kernels<16, GatheredLeaves<16>>(), general_w16());
 }
 
 }  // namespace KIWAMI_ISA

@@ -9,7 +9,7 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 
 TraversalKernels compact_w8() {
-  return joined(kernels_of_width<8, GatheredLeaves<8>>(), multi_hit<8, GatheredLeaves<8>>,
+  return joined(kernels_of_width<8, GatheredLeaves<8>>(), multi_hit_kernels<8, GatheredLeaves<8>>(),
                 general_w8());
 }
 

@@ -11,60 +11,114 @@
 namespace kiwami {
 namespace {
 
-/// Rays that one task traces.
-constexpr size_t kBlockSize = kChunkSize;
+/// Rays that one task traces: enough for kernels that trace rays together, few enough that their
+/// lists stay in the caches.
+constexpr size_t kBlockSize = 1024;
 /// Blocks that are traced before their hits move to the caller: enough for all threads, and a bound
 /// for the memory that hits take on their way.
-constexpr size_t kWaveBlocks = 64;
-/// Hits of a ray for which a block has room at first.
-constexpr size_t kFirstRoom = 4;
+constexpr size_t kWaveBlocks = 32;
+/// The longest list that is kept sorted by insertion.
+constexpr uint32_t kMostInserted = 64;
+/// Where more are wanted: a list that is seldom full. Rays that fill it are traced again.
+constexpr uint32_t kUsualLength = 16;
 
 /// The hits of one block of rays, until it is known where they go.
 class BlockHits {
  public:
   /// Traces the rays for their hits.
   void trace(const CommittedScene& scene, const RayBatch& batch, uint32_t max_hits) {
-    used_ = 0;
-    for (size_t done = 0; done < batch.count;) {
-      HitRoom room{hits_.data(), keys_.data(), hits_.size(), used_, counts_ + done};
-      const RayBatch rest{batch.rays + done * batch.ray_stride, batch.ray_stride, nullptr, 0,
-                          batch.count - done};
-      const size_t answered = scene.kernels().multi_hit(scene.view(), rest, max_hits, room);
-      used_ = room.used;
-      done += answered;
-      if (answered < rest.count) grow(scene.memory(), batch.count);
+    const bool is_short = max_hits != 0 && max_hits <= kMostInserted;
+    limit_ = is_short ? max_hits : kUsualLength;
+    long_count_ = 0;
+    make_room(scene.memory(), batch.count);
+    scene.kernels().multi_hit.nearest(scene.view(), counting(batch),
+                                      {hits_.data(), keys_.data(), limit_});
+    for (size_t i = 0; i < batch.count; ++i) {
+      is_long_[i] = !is_short && counts_[i] == limit_ ? 1 : 0;
+      if (is_long_[i] != 0) trace_long(scene, batch, i, max_hits);
     }
   }
 
   /// Traces the rays for the numbers of their hits alone.
   void count(const CommittedScene& scene, const RayBatch& batch, uint32_t max_hits) {
-    used_ = 0;
-    scene.kernels().all_hits(
-        scene.view(), {batch.rays, batch.ray_stride, reinterpret_cast<unsigned char*>(counts_),
-                       sizeof counts_[0], batch.count});
+    limit_ = 0;
+    make_room(scene.memory(), batch.count);
+    scene.kernels().all_hits(scene.view(), counting(batch));
     if (max_hits == 0) return;
     for (size_t i = 0; i < batch.count; ++i) counts_[i] = std::min(counts_[i], max_hits);
   }
 
-  const kiwami_hit* hits() const { return hits_.data(); }
-  size_t hit_count() const { return used_; }
   /// Of ray i of the block.
   uint32_t count_of(size_t i) const { return counts_[i]; }
 
- private:
-  void grow(Memory& memory, size_t ray_count) {
-    const size_t size = std::max(kFirstRoom * ray_count, 2 * hits_.size());
-    Array<kiwami_hit> larger(memory, size);
-    if (used_) std::memcpy(larger.data(), hits_.data(), used_ * sizeof(kiwami_hit));
-    keys_ = {};
-    hits_ = std::move(larger);
-    keys_ = Array<HitKey>(memory, size);
+  /// Calls write(hits, count) for runs of the hits of the first ray_count rays, in order.
+  template <typename Write>
+  void deliver(size_t ray_count, Write write) const {
+    kiwami_hit sorted[kMostInserted];
+    const kiwami_hit* next_long = long_hits_.data();
+    for (size_t i = 0; i < ray_count; ++i) {
+      const uint32_t count = counts_[i];
+      if (is_long_[i] != 0) {
+        write(next_long, count);
+        next_long += count;
+        continue;
+      }
+      const size_t first = i * limit_;
+      for (uint32_t k = 0; k < count; ++k) sorted[k] = hits_[first + keys_[first + k].slot];
+      if (count) write(sorted, count);
+    }
   }
 
-  Array<kiwami_hit> hits_;
+ private:
+  void make_room(Memory& memory, size_t ray_count) {
+    if (counts_.size() < ray_count) {
+      counts_ = Array<uint32_t>(memory, ray_count);
+      is_long_ = Array<uint8_t>(memory, ray_count);
+    }
+    const size_t slots = ray_count * limit_;
+    if (hits_.size() < slots) hits_ = Array<kiwami_hit>(memory, slots);
+    if (keys_.size() < slots) keys_ = Array<HitKey>(memory, slots);
+  }
+
+  RayBatch counting(const RayBatch& rays) {
+    return {rays.rays, rays.ray_stride, reinterpret_cast<unsigned char*>(counts_.data()),
+            sizeof counts_[0], rays.count};
+  }
+
+  /// Traces ray i for all that is wanted of it, in as much memory as that takes.
+  void trace_long(const CommittedScene& scene, const RayBatch& batch, size_t i, uint32_t max_hits) {
+    const RayBatch ray{batch.rays + i * batch.ray_stride, batch.ray_stride, nullptr, 0, 1};
+    for (;;) {
+      const size_t left = long_hits_.size() - long_count_;
+      const size_t count = scene.kernels().multi_hit.many(
+          scene.view(), ray,
+          {long_hits_.data() + long_count_, long_keys_.data() + long_count_, left, max_hits});
+      if (count <= left) {
+        counts_[i] = static_cast<uint32_t>(count);
+        long_count_ += count;
+        return;
+      }
+      grow_long(scene.memory());
+    }
+  }
+
+  void grow_long(Memory& memory) {
+    const size_t size = std::max(size_t{4} * kUsualLength, 2 * long_hits_.size());
+    Array<kiwami_hit> larger(memory, size);
+    if (long_count_) std::memcpy(larger.data(), long_hits_.data(), long_count_ * sizeof larger[0]);
+    Array<HitKey> keys(memory, size);
+    long_hits_ = std::move(larger);
+    long_keys_ = std::move(keys);
+  }
+
+  Array<kiwami_hit> hits_;  ///< limit_ slots a ray
   Array<HitKey> keys_;
-  size_t used_ = 0;
-  uint32_t counts_[kBlockSize];
+  Array<kiwami_hit> long_hits_;  ///< of the rays with more, one after the other
+  Array<HitKey> long_keys_;
+  size_t long_count_ = 0;
+  uint32_t limit_ = 0;
+  Array<uint32_t> counts_;  ///< of each ray
+  Array<uint8_t> is_long_;
 };
 
 /// The parts of one call, of which Rays gives blocks as batches and Hits takes runs of hits.
@@ -73,28 +127,48 @@ class MultiHitTrace {
  public:
   MultiHitTrace(const CommittedScene& scene, const Rays& rays, const Hits& hits, size_t count,
                 const MultiHitRequest& request)
-      : scene_(scene), rays_(rays), hits_(hits), count_(count), request_(request) {}
+      : scene_(scene),
+        rays_(rays),
+        hits_(hits),
+        count_(count),
+        request_(request),
+        is_alone_(is_alone(scene.parallel(), count, request.on_calling_thread)) {}
 
   uint64_t run() {
-    const bool alone = is_alone(scene_.parallel(), count_, request_.on_calling_thread);
-    const size_t wave = kBlockSize * (alone ? 1 : kWaveBlocks);
+    const size_t wave = kBlockSize * (is_alone_ ? 1 : kWaveBlocks);
     request_.offsets[0] = 0;
     for (size_t begin = 0; begin < count_; begin += wave) {
       const size_t end = std::min(count_, begin + wave);
-      if (alone) {
-        const DefaultFloatEnvironment environment;
-        trace_block(begin, end, blocks_[0]);
-      } else {
-        scene_.parallel().for_blocks(end - begin, kBlockSize, [&](size_t first, size_t last) {
-          trace_block(begin + first, begin + last, blocks_[first / kBlockSize]);
-        });
+      for_blocks(begin, end, [&](size_t first, size_t last, BlockHits& block) {
+        trace_block(first, last, block);
+      });
+      for (size_t i = begin; i < end; ++i) {
+        const BlockHits& block = blocks_[(i - begin) / kBlockSize];
+        request_.offsets[i + 1] = request_.offsets[i] + block.count_of((i - begin) % kBlockSize);
       }
-      deliver(begin, end);
+      if (is_full_) continue;
+      for_blocks(begin, end, [&](size_t first, size_t last, const BlockHits& block) {
+        deliver(first, last, block);
+      });
+      is_full_ = request_.offsets[end] >= request_.hit_capacity;
     }
     return request_.offsets[count_];
   }
 
  private:
+  /// Calls body(begin, end, block) for the blocks of a wave.
+  template <typename Body>
+  void for_blocks(size_t begin, size_t end, Body body) {
+    if (is_alone_) {
+      const DefaultFloatEnvironment environment;
+      body(begin, end, blocks_[0]);
+      return;
+    }
+    scene_.parallel().for_blocks(end - begin, kBlockSize, [&](size_t first, size_t last) {
+      body(begin + first, begin + last, blocks_[first / kBlockSize]);
+    });
+  }
+
   void trace_block(size_t begin, size_t end, BlockHits& block) {
     kiwami_ray scratch[kBlockSize];
     const RayBatch batch = rays_.block(begin, end, scratch);
@@ -105,21 +179,16 @@ class MultiHitTrace {
     }
   }
 
-  /// Gives the hits of a wave their places.
-  void deliver(size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const BlockHits& block = blocks_[(i - begin) / kBlockSize];
-      request_.offsets[i + 1] = request_.offsets[i] + block.count_of((i - begin) % kBlockSize);
-    }
-    for (size_t first = begin; first < end; first += kBlockSize) {
-      const BlockHits& block = blocks_[(first - begin) / kBlockSize];
-      const uint64_t offset = request_.offsets[first];
-      if (offset >= request_.hit_capacity) break;
-      const uint64_t fitting =
-          std::min<uint64_t>(block.hit_count(), request_.hit_capacity - offset);
-      hits_.write(static_cast<size_t>(offset), block.hits(), static_cast<size_t>(fitting));
-    }
-    is_full_ = request_.offsets[end] >= request_.hit_capacity;
+  /// Writes what fits of a block to its place.
+  void deliver(size_t begin, size_t end, const BlockHits& block) const {
+    uint64_t offset = request_.offsets[begin];
+    block.deliver(end - begin, [&](const kiwami_hit* hits, size_t count) {
+      if (offset < request_.hit_capacity) {
+        const uint64_t fitting = std::min<uint64_t>(count, request_.hit_capacity - offset);
+        hits_.write(static_cast<size_t>(offset), hits, static_cast<size_t>(fitting));
+      }
+      offset += count;
+    });
   }
 
   const CommittedScene& scene_;
@@ -127,6 +196,7 @@ class MultiHitTrace {
   const Hits& hits_;
   size_t count_;
   const MultiHitRequest& request_;
+  bool is_alone_;
   bool is_full_ = request_.hit_capacity == 0;  ///< what comes is only counted
   BlockHits blocks_[kWaveBlocks];
 };

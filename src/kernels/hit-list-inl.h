@@ -76,17 +76,17 @@ inline void sort_keys(const kiwami_hit* hits, HitKey* keys, size_t count) {
   }
 }
 
-/// The nearest hits up to a limit of at most kCapacity, sorted at any time.
+/// The nearest hits up to a limit, sorted at any time. They lie in the caller's slots.
 struct NearestHits {
-  static constexpr uint32_t kCapacity = 64;
-
+  kiwami_hit* hits;
+  HitKey* keys;
   uint32_t limit;
   uint32_t count;
-  HitKey keys[kCapacity];
-  kiwami_hit hits[kCapacity];
 
-  void begin(uint32_t limit_of_ray, const HitRoom&) {
-    limit = limit_of_ray;
+  void begin(const HitLists& lists, size_t ray) {
+    hits = lists.hits + ray * lists.limit;
+    keys = lists.keys + ray * lists.limit;
+    limit = lists.limit;
     count = 0;
   }
 
@@ -114,19 +114,10 @@ struct NearestHits {
     hits[slot] = hit;
     return true;
   }
-
-  /// Moves the hits to the room; false where it has too little.
-  bool deliver(HitRoom& room, uint32_t& delivered) const {
-    if (count > room.capacity - room.used) return false;
-    for (uint32_t i = 0; i < count; ++i) room.hits[room.used + i] = hits[keys[i].slot];
-    room.used += count;
-    delivered = count;
-    return true;
-  }
 };
 
 /// All hits, or more of the nearest than a list that is always sorted should hold. They are
-/// collected in the room itself; when twice the limit are there, the farther half goes.
+/// collected in the room; when twice the limit are there, the farther half goes.
 struct CollectedHits {
   uint32_t limit;  ///< 0: none
   size_t capacity;
@@ -135,13 +126,13 @@ struct CollectedHits {
   kiwami_hit* hits;
   HitKey* keys;
 
-  void begin(uint32_t limit_of_ray, const HitRoom& room) {
-    limit = limit_of_ray;
-    capacity = room.capacity - room.used;
+  void begin(const HitRoom& room) {
+    limit = room.limit;
+    capacity = room.capacity;
     if (limit != 0 && capacity / 2 > limit) capacity = 2 * size_t{limit};
     count = sorted = 0;
-    hits = room.hits + room.used;
-    keys = room.keys + room.used;
+    hits = room.hits;
+    keys = room.keys;
   }
 
   bool is_full() const { return limit != 0 && sorted == limit; }
@@ -161,14 +152,6 @@ struct CollectedHits {
     return true;
   }
 
-  bool deliver(HitRoom& room, uint32_t& delivered) {
-    settle();
-    room.used += count;
-    delivered = static_cast<uint32_t>(count);
-    return true;
-  }
-
- private:
   /// Sorts, and drops repeats and what is beyond the limit.
   void settle() {
     sort_keys(hits, keys, count);
@@ -183,6 +166,7 @@ struct CollectedHits {
     count = sorted = kept;
   }
 
+ private:
   /// Puts the hits into the order of their keys, along the cycles of the permutation.
   void reorder() {
     for (uint32_t first = 0; first < count; ++first) {

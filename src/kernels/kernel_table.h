@@ -56,26 +56,40 @@ using TraversalKernel = void (*)(const SceneView& scene, const RayBatch& batch);
 using CountingKernel = void (*)(const SceneView& scene, const RayBatch& batch,
                                 TraversalCounters& counters);
 
-/// What hits are sorted by, and where each is.
+/// What hits are sorted by, and the slot that each is in.
 struct HitKey {
   float t;
   uint32_t slot;
 };
 
-/// Room for the hits of a run of rays, one ray's after the other's.
-struct HitRoom {
-  kiwami_hit* hits;  ///< of which the first used are taken
-  HitKey* keys;      ///< as many, to work with
-  size_t capacity;
-  size_t used;
-  uint32_t* counts;  ///< receives each ray's number of hits
+/// Lists of the nearest hits of the rays of a batch: ray i has the slots from i * limit on. Its
+/// keys are sorted, and say where from there each hit is.
+struct HitLists {
+  kiwami_hit* hits;
+  HitKey* keys;
+  uint32_t limit;  ///< at most this many of a ray
 };
+/// Answers: uint32_t, the number of hits in the ray's list, each hit being there once.
+using NearestHitsKernel = void (*)(const SceneView& scene, const RayBatch& batch,
+                                   const HitLists& lists);
 
-/// Adds the hits of each ray to the room, the nearest max_hits (0: all), sorted, each once. Returns
-/// how many rays were answered, from the first on: fewer than all where the next one's hits find no
-/// room. The answers of the batch are not used.
-using MultiHitKernel = size_t (*)(const SceneView& scene, const RayBatch& batch, uint32_t max_hits,
-                                  HitRoom& room);
+/// Room for the hits of one ray.
+struct HitRoom {
+  kiwami_hit* hits;
+  HitKey* keys;  ///< as many, to work with
+  size_t capacity;
+  uint32_t limit;  ///< of the nearest ones; 0: none
+};
+/// Fills the room with a ray's hits, sorted, each once. Returns their number, or more than the
+/// capacity where that is too small. The rays of the batch are one; its answers are not used.
+using ManyHitsKernel = size_t (*)(const SceneView& scene, const RayBatch& batch,
+                                  const HitRoom& room);
+
+/// The kernels that list several hits of a ray.
+struct MultiHitKernels {
+  NearestHitsKernel nearest = nullptr;
+  ManyHitsKernel many = nullptr;
+};
 
 using GeneralKernel = void (*)(const SceneView& scene, const RayBatch& batch,
                                const QueryOptions& options);
@@ -99,7 +113,7 @@ struct TraversalKernels {
   TraversalKernel all_hits;            ///< answers: uint32_t, the number of accepted triangles
   CountingKernel closest_hit_counted;  ///< the same answers, and the counters
   CountingKernel any_hit_counted;
-  MultiHitKernel multi_hit = nullptr;
+  MultiHitKernels multi_hit = {};
   GeneralKernels general{};
 };
 

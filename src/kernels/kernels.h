@@ -12,9 +12,9 @@ TraversalKernels kernels_w8();
 TraversalKernels kernels_w16();
 
 // In objects of their own, so that the plain kernels are compiled as if there were no others.
-MultiHitKernel multi_hit_w4();
-MultiHitKernel multi_hit_w8();
-MultiHitKernel multi_hit_w16();
+MultiHitKernels multi_hit_w4();
+MultiHitKernels multi_hit_w8();
+MultiHitKernels multi_hit_w16();
 GeneralKernels general_w4();
 GeneralKernels general_w8();
 GeneralKernels general_w16();
@@ -24,7 +24,7 @@ TraversalKernels compact_w4();
 TraversalKernels compact_w8();
 TraversalKernels compact_w16();
 
-inline TraversalKernels joined(TraversalKernels kernels, MultiHitKernel multi_hit,
+inline TraversalKernels joined(TraversalKernels kernels, MultiHitKernels multi_hit,
                                const GeneralKernels& general) {
   kernels.multi_hit = multi_hit;
   kernels.general = general;

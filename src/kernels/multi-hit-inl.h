@@ -11,7 +11,7 @@
 
 #include "kernels/hit-inl.h"
 #include "kernels/hit-list-inl.h"
-#include "kernels/traversal-inl.h"
+#include "kernels/kernels-inl.h"
 
 namespace kiwami {
 namespace KIWAMI_ISA {
@@ -32,9 +32,11 @@ inline kiwami_hit hit_of(const SceneView& scene, const LeafBlock<N>& leaf, int l
 }
 
 /// Puts all that the ray meets into a list, for as long as that has room.
-template <int N, typename Leaves, typename List>
+template <int N, typename Leaves, typename List, bool kIsOrdered = true>
 struct MultiHitQuery : QueryBase<N, Leaves> {
-  static constexpr bool kOrdered = true;
+  static constexpr bool kOrdered = kIsOrdered;
+  static constexpr bool kShrinks = true;
+  using Answer = uint32_t;
 
   List list;
   bool lacks_room = false;
@@ -49,34 +51,109 @@ struct MultiHitQuery : QueryBase<N, Leaves> {
     if (list.is_full()) this->best_bound = scaled_upper(*this->ray, list.farthest());
     return lacks_room;
   }
+
+  static uint32_t miss() { return 0; }
+  uint32_t answer() const { return static_cast<uint32_t>(list.count); }
 };
 
-template <int N, typename Leaves, typename List>
-inline size_t trace_lists(const SceneView& scene, const RayBatch& batch, uint32_t max_hits,
-                          HitRoom& room) {
-  NoProbe probe;
-  MultiHitQuery<N, Leaves, List> query;
-  for (size_t i = 0; i < batch.count; ++i) {
-    const UnalignedRay& ray = ray_of(batch, i);
-    room.counts[i] = 0;
-    if (scene.tree.root.mask() == 0 || !is_traceable(ray)) continue;
-    ReadyRay ready;
-    set_up(ray, scene.tree, ready);
-    query.begin(scene, ready);
-    query.list.begin(max_hits, room);
-    traverse<N>(scene.tree, {scene.tree.root, ready.nearest}, ready, query, probe);
-    if (query.lacks_room || !query.list.deliver(room, room.counts[i])) return i;
+template <int N, typename Leaves>
+using NearestHitsQuery = MultiHitQuery<N, Leaves, NearestHits>;
+
+/// One batch of rays on its way to lists of its nearest hits.
+template <int N, typename Leaves>
+struct NearestHitsTrace {
+  const SceneView& scene;
+  const RayBatch& batch;
+  const HitLists& lists;
+
+  void trace_singly(size_t first) const {
+    NoProbe probe;
+    for (size_t i = first; i < batch.count; ++i) {
+      const UnalignedRay& ray = ray_of(batch, i);
+      if (scene.tree.root.mask() == 0 || !is_traceable(ray)) {
+        write_answer(batch, i, NearestHitsQuery<N, Leaves>::miss());
+        continue;
+      }
+      ReadyRay ready;
+      set_up(ray, scene.tree, ready);
+      NearestHitsQuery<N, Leaves> query;
+      query.begin(scene, ready);
+      query.list.begin(lists, i);
+      traverse<N>(scene.tree, {scene.tree.root, ready.nearest}, ready, query, probe);
+      write_answer(batch, i, query.answer());
+    }
   }
-  return batch.count;
+
+  /// Traces the first of the rays that wait, as many as a stream takes, together, also where they
+  /// part soon: what ends a single ray early, its nearest hit, does not end these. Most lists are
+  /// never full, so children are not visited in order.
+  void trace_stream(StreamWaiting<N>& waiting) const {
+    using Query = MultiHitQuery<N, Leaves, NearestHits, false>;
+    const int size = waiting.count < kStreamSize ? waiting.count : kStreamSize;
+    if (size == 0) return;
+    Query queries[kStreamSize];
+    for (int i = 0; i < size; ++i) {
+      queries[i].begin(scene, waiting.rays[i]);
+      queries[i].list.begin(lists, waiting.index[i]);
+    }
+    StreamSlabs<N> slabs;
+    set_up_stream<N>(waiting.rays, size, slabs);
+    StreamTraversal<N, Query> traversal{scene.tree, waiting.rays, queries, ~0u >> (32 - size),
+                                        slabs};
+    traversal.run();
+    for (int i = 0; i < size; ++i) write_answer(batch, waiting.index[i], queries[i].answer());
+  }
+
+  /// Collects rays by octant from the whole batch.
+  void trace_by_octant() const {
+    StreamWaiting<N> octants[8];
+    size_t first = 0;
+    for (; first + N <= batch.count; first += N) {
+      set_up_group<NearestHitsQuery<N, Leaves>, N>(
+          scene, batch, first,
+          [&](uint32_t octant) -> StreamWaiting<N>& { return octants[octant]; });
+      for (StreamWaiting<N>& waiting : octants) {
+        if (!waiting.is_complete()) continue;
+        trace_stream(waiting);
+        waiting.shift();
+      }
+    }
+    for (StreamWaiting<N>& waiting : octants) trace_stream(waiting);
+    trace_singly(first);
+  }
+};
+
+/// See NearestHitsKernel.
+template <int N, typename Leaves>
+void nearest_hits(const SceneView& scene, const RayBatch& batch, const HitLists& lists) {
+  const NearestHitsTrace<N, Leaves> trace{scene, batch, lists};
+  if (batch.count < kStreamSize || scene.tree.root.mask() == 0) {
+    trace.trace_singly(0);
+  } else {
+    trace.trace_by_octant();
+  }
 }
 
-/// See MultiHitKernel.
+/// See ManyHitsKernel.
+template <int N, typename Leaves>
+size_t many_hits(const SceneView& scene, const RayBatch& batch, const HitRoom& room) {
+  const UnalignedRay& ray = ray_of(batch, 0);
+  if (scene.tree.root.mask() == 0 || !is_traceable(ray)) return 0;
+  ReadyRay ready;
+  set_up(ray, scene.tree, ready);
+  MultiHitQuery<N, Leaves, CollectedHits> query;
+  query.begin(scene, ready);
+  query.list.begin(room);
+  NoProbe probe;
+  traverse<N>(scene.tree, {scene.tree.root, ready.nearest}, ready, query, probe);
+  if (query.lacks_room) return room.capacity + 1;
+  query.list.settle();
+  return query.list.count;
+}
+
 template <int N, typename Leaves = StoredLeaves<N>>
-size_t multi_hit(const SceneView& scene, const RayBatch& batch, uint32_t max_hits, HitRoom& room) {
-  if (max_hits != 0 && max_hits <= NearestHits::kCapacity) {
-    return trace_lists<N, Leaves, NearestHits>(scene, batch, max_hits, room);
-  }
-  return trace_lists<N, Leaves, CollectedHits>(scene, batch, max_hits, room);
+MultiHitKernels multi_hit_kernels() {
+  return {nearest_hits<N, Leaves>, many_hits<N, Leaves>};
 }
 
 }  // namespace

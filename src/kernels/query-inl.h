@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a traversal looks for: the closest hit, any hit, or the number of all hits. Each query says
-// what to do with a leaf; the traversal loop is the same for all.
+// what to do with a leaf; the traversal loop is the same for all. kOrdered: near children come
+// first; kShrinks: best_bound draws nearer.
 #pragma once
 
 #include "kernels/leaf-inl.h"
@@ -79,6 +80,7 @@ struct QueryBase {
 template <int N, typename Leaves = StoredLeaves<N>>
 struct ClosestHitQuery : QueryBase<N, Leaves> {
   static constexpr bool kOrdered = true;
+  static constexpr bool kShrinks = true;
   using Answer = kiwami_hit;
 
   float best_t;
@@ -146,6 +148,7 @@ struct ClosestHitQuery : QueryBase<N, Leaves> {
 template <int N, typename Leaves = StoredLeaves<N>>
 struct AnyHitQuery : QueryBase<N, Leaves> {
   static constexpr bool kOrdered = false;
+  static constexpr bool kShrinks = false;
   using Answer = uint8_t;
 
   bool is_hit;
@@ -176,6 +179,7 @@ bool is_first_place(const SceneView& scene, const ReadyRay& ray, const LeafBlock
 template <int N, typename Leaves = StoredLeaves<N>>
 struct AllHitsQuery : QueryBase<N, Leaves> {
   static constexpr bool kOrdered = false;
+  static constexpr bool kShrinks = false;
   using Answer = uint32_t;
 
   uint32_t count;

@@ -242,7 +242,7 @@ struct StreamTraversal {
     for (; active; active &= active - 1) {
       const int i = __builtin_ctz(active);
       if (visit(i)) alive &= ~(1u << i);
-      if constexpr (Query::kOrdered) {
+      if constexpr (Query::kShrinks) {
         rays[i].farthest = slabs.farthest[i] = queries[i].best_bound;
       }
     }

@@ -7,7 +7,7 @@
 namespace kiwami {
 namespace KIWAMI_ISA {
 
-MultiHitKernel multi_hit_w16() { return multi_hit<16>; }
+MultiHitKernels multi_hit_w16() { return multi_hit_kernels<16>(); }
 
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami

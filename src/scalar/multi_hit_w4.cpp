@@ -7,7 +7,7 @@
 namespace kiwami {
 namespace KIWAMI_ISA {
 
-MultiHitKernel multi_hit_w4() { return multi_hit<4>; }
+MultiHitKernels multi_hit_w4() { return multi_hit_kernels<4>(); }
 
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami

@@ -9,7 +9,7 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 
 TraversalKernels compact_w4() {
-  return joined(kernels_of_width<4, GatheredLeaves<4>>(), multi_hit<4, GatheredLeaves<4>>,
+  return joined(kernels_of_width<4, GatheredLeaves<4>>(), multi_hit_kernels<4, GatheredLeaves<4>>(),
                 general_w4());
 }
 

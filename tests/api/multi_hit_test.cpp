@@ -267,11 +267,13 @@ TEST_F(MultiHit, EveryFailedAllocationIsAnErrorAndLeaksNothing) {
   {
     const Device device = make_device(desc);
     const Scene scene = scene_of(device);
+    const std::vector<kiwami_ray> rays(rays_.begin(), rays_.begin() + 6000);
+    const uint64_t capacity = multi_hit(scene, rays, 0).hits.size();
     const size_t live = allocator.live_bytes;
     size_t failures = 0;
     for (size_t later = 0;; ++later) {
       allocator.first_failure = allocator.calls + later;
-      const Lists lists = multi_hit(scene, rays_, 0, 1000000);
+      const Lists lists = multi_hit(scene, rays, 0, capacity);
       ASSERT_EQ(allocator.live_bytes, live);
       if (lists.result == KIWAMI_OK) break;
       ASSERT_EQ(lists.result, KIWAMI_ERROR_OUT_OF_MEMORY) << last_error();

@@ -229,6 +229,25 @@ TEST(Bench, MakesATableOfTextbookStructures) {
   EXPECT_GT(tests["grid"], 500.0 * tests["bvh"]);
 }
 
+TEST(Bench, MakesATableOfQueries) {
+  for (const std::string limit : {"2", "0"}) {
+    const Json rows =
+        bench_rows({"room:20000", "--queries", "multi_hit", "--max-hits", limit, "--rays",
+                    "primary,random", "--clock", "processor", "--threads", "1"});
+    ASSERT_EQ(rows.size(), 2u);
+    for (const Json& row : rows) {
+      EXPECT_EQ(row.at("query"), "multi_hit");
+      EXPECT_EQ(row.at("max_hits").dump(), limit);
+      expect_positive(row, {"mrays", "hits_per_ray", "stepping_mrays", "stepping_ratio"});
+      EXPECT_LT(row.at("stepping_disagreements"), 20) << row;
+      if (row.contains("embree_mrays")) {
+        EXPECT_LT(row.at("embree_disagreements"), 20) << row;
+      }
+    }
+    EXPECT_EQ(rows.at(0).at("hits_per_ray") <= 2.0, limit == "2");
+  }
+}
+
 TEST(Bench, TheCameraDecidesThePrimaryRays) {
   const auto hash = [](const std::vector<std::string>& view) {
     std::vector<std::string> arguments = {"terrain:20", "--rays", "primary", "--threads", "1",
@@ -279,6 +298,7 @@ TEST(Bench, WrongArgumentsAreRefusedInOneSentence) {
       {{"sphere:1", "--param", "900=3"}, "900"},
       {{"sphere:1", "--list", "best"}, "best"},
       {{"sphere:1", "--structures", "grid,octree"}, "octree"},
+      {{"sphere:1", "--queries", "multi_hit,portal"}, "portal"},
       {{"sphere:1", "--pipelines", "bsp"}, "there is no builder 'bsp'"},
       {{"sphere:1", "--pipelines", "lbvh,lbvh"}, "--pipelines"},
       {{"--list", folder / ""}, "expected tuning, judging or a text file"},

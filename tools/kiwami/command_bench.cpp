@@ -8,6 +8,7 @@
 #include "kiwami/bench.h"
 #include "kiwami/bench_change.h"
 #include "kiwami/bench_pipelines.h"
+#include "kiwami/bench_queries.h"
 #include "kiwami/bench_report.h"
 #include "kiwami/bench_structures.h"
 #include "kiwami/commands.h"
@@ -42,6 +43,8 @@ struct BenchOptions {
   std::string pipelines;
   std::string structures;
   bool change = false;
+  std::string queries;
+  uint32_t max_hits = 8;
   uint32_t rounds = 5;
   uint64_t ray_count = 1u << 20;
   std::string clock = "wall";
@@ -210,6 +213,30 @@ int run_change_table(const BenchOptions& options, const BenchSettings& settings,
   return all_right ? 0 : kWrongAnswer;
 }
 
+/// The table of queries beyond closest and any hit.
+int run_query_table(const BenchOptions& options, const BenchSettings& settings,
+                    const std::vector<std::string>& scenes) {
+  const std::vector<std::string> names = split("--queries", options.queries);
+  for (const std::string& name : names) {
+    if (std::count(query_names().begin(), query_names().end(), name) == 0) {
+      throw UsageError("--queries has '" + name + "', expected some of " + joined(query_names()));
+    }
+  }
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  bool all_right = true;
+  for (const std::string& scene : scenes) {
+    bool is_first = true;
+    run_queries(scene, names, options.max_hits, settings, [&](const QueryRow& row) {
+      print_row(row, is_first);
+      is_first = false;
+      rows.push_back(to_json(row));
+      all_right = all_right && row.wrong.empty();
+    });
+    if (!options.json.empty()) write_file(options.json, rows.dump(1) + "\n");
+  }
+  return all_right ? 0 : kWrongAnswer;
+}
+
 int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   const std::vector<std::string> scenes = choose_scenes(options);
@@ -217,6 +244,7 @@ int run(const BenchOptions& options) {
   if (!options.pipelines.empty()) return run_pipeline_table(options, settings, scenes);
   if (options.change) return run_change_table(options, settings, scenes);
   if (!options.structures.empty()) return run_structure_table(options, settings, scenes);
+  if (!options.queries.empty()) return run_query_table(options, settings, scenes);
   const std::string peer = peer_name(settings);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   RatioSummary summary;
@@ -309,6 +337,12 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
                      "bih and bvh, next to the library, one ray a call on one thread");
   command.add_flag("--change", options.change,
                    "Refits of the scene with moving vertices, in place of rays");
+  command.add_option("--queries", options.queries,
+                     "A table of queries on one thread, some of " + joined(query_names()) +
+                         ", next to what they replace: stepping from hit to hit, and Embree's "
+                         "filter functions");
+  command.add_option("--max-hits", options.max_hits, "Hits of a ray in --queries; 0: all")
+      ->capture_default_str();
   command.add_option("--rounds", options.rounds, "Runs of each side; their medians count")
       ->check(whole_number(1, 1000))
       ->capture_default_str();

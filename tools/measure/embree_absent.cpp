@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "measure/embree_contender.h"
+#include "measure/embree_queries.h"
 #include "measure/embree_refit.h"
 #include "measure/tracer.h"
 
@@ -16,6 +17,8 @@ std::unique_ptr<EmbreeRefit> EmbreeRefit::create(const SceneFile&, uint32_t, uin
 }
 
 std::string entrance_name(EmbreeEntrance, bool) { return ""; }
+
+std::unique_ptr<EmbreeQueries> EmbreeQueries::create(const SceneFile&, uint32_t) { return nullptr; }
 
 const char* embree_version() { return ""; }
 

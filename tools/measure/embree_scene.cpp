@@ -26,6 +26,16 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, con
 
 }  // namespace
 
+std::string embree_config(uint32_t isa, uint32_t threads) {
+  std::string config = "threads=" + std::to_string(threads);
+  if (isa == KIWAMI_ISA_SCALAR) config += ",isa=sse2";
+  if (isa == KIWAMI_ISA_SSE) config += ",isa=sse4.2";
+  if (isa == KIWAMI_ISA_AVX2) config += ",isa=avx2";
+  // Embree keeps to 256 bits by itself unless it is told that the clock may fall.
+  if (isa == KIWAMI_ISA_AVX512) config += ",isa=avx512,frequency_level=simd512";
+  return config;
+}
+
 EmbreeScene::EmbreeScene(const SceneFile& file, const EmbreeSettings& settings) {
   device_ = rtcNewDevice(settings.config.c_str());
   if (device_ == nullptr) {
@@ -33,7 +43,9 @@ EmbreeScene::EmbreeScene(const SceneFile& file, const EmbreeSettings& settings) 
   }
   scene_ = rtcNewScene(device_);
   rtcSetSceneBuildQuality(scene_, settings.quality);
-  if (settings.robust) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  const int flags = (settings.robust ? RTC_SCENE_FLAG_ROBUST : 0) |
+                    (settings.has_filters ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION : 0);
+  if (flags != 0) rtcSetSceneFlags(scene_, static_cast<RTCSceneFlags>(flags));
   try {
     for (const Mesh& mesh : file.meshes) attach(mesh, settings.quality);
     commit();

@@ -17,9 +17,10 @@ struct EmbreeSettings {
   std::string config;  ///< the device's, such as "threads=1,isa=avx2"
   bool robust = false;
   RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
+  bool has_filters = false;  ///< of intersection contexts
 };
 
-/// The configuration of a device whose instructions are limited to those of one of KIWAMI_ISA_*.
+/// The configuration of a device with the instructions of one of KIWAMI_ISA_* and so many threads.
 std::string embree_config(uint32_t isa, uint32_t threads);
 
 /// Owns an Embree device and a committed scene whose geometry i is mesh i of the file.

@@ -207,6 +207,15 @@ void BuiltScene::any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> o
   check(kiwami_any_hit(scene_, rays.data(), 0, occluded.data(), 0, rays.size(), nullptr), nullptr);
 }
 
+uint64_t BuiltScene::multi_hits(std::span<const kiwami_ray> rays, uint32_t max_hits,
+                                std::span<uint64_t> offsets, std::span<kiwami_hit> hits) const {
+  kiwami_hit* const target = hits.empty() ? nullptr : hits.data();
+  const kiwami_result result = kiwami_multi_hit(scene_, rays.data(), 0, rays.size(), max_hits,
+                                                target, hits.size(), offsets.data(), nullptr);
+  if (result != KIWAMI_ERROR_CAPACITY) check(result, nullptr);
+  return offsets.back();
+}
+
 void BuiltScene::closest_hits_singly(std::span<const kiwami_ray> rays,
                                      std::span<kiwami_hit> hits) const {
   const kiwami_query query = calling_thread_query();

@@ -110,6 +110,10 @@ class BuiltScene : public Tracer {
   /// The same with one call a ray, each on the calling thread.
   void closest_hits_singly(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const;
   void any_hits_singly(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
+  /// The nearest max_hits of each ray (0: all): those of ray i are hits[offsets[i]] to
+  /// hits[offsets[i + 1] - 1]. Returns their number; what is beyond hits is lost.
+  uint64_t multi_hits(std::span<const kiwami_ray> rays, uint32_t max_hits,
+                      std::span<uint64_t> offsets, std::span<kiwami_hit> hits) const;
   /// What the tree costs by the costs that it was built with.
   kiwami_bvh_measures measures() const;
   /// The same node by node; `flags` are some of KIWAMI_MEASURE_*.
