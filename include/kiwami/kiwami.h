@@ -14,6 +14,7 @@
 #include "light.h"
 #include "scene.h"
 #include "shapes.h"
+#include "surface.h"
 #include "trace.h"
 #include "user_geometry.h"
 

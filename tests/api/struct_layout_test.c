@@ -466,6 +466,31 @@ static void check_light_descs(void) {
   FIELD(kiwami_light_instance_desc, link_mask, 64);
 }
 
+static void check_interpolation(void) {
+  SIZE(kiwami_interpolation, 184);
+  FIELD(kiwami_interpolation, struct_size, 0);
+  FIELD(kiwami_interpolation, channels, 4);
+  FIELD(kiwami_interpolation, attributes, 8);
+  FIELD(kiwami_interpolation, attribute_offset, 16);
+  FIELD(kiwami_interpolation, attribute_stride, 24);
+  FIELD(kiwami_interpolation, attribute_count, 32);
+  FIELD(kiwami_interpolation, indices, 40);
+  FIELD(kiwami_interpolation, index_offset, 48);
+  FIELD(kiwami_interpolation, index_stride, 56);
+  FIELD(kiwami_interpolation, primitive_id, 64);
+  FIELD(kiwami_interpolation, u, 80);
+  FIELD(kiwami_interpolation, v, 96);
+  FIELD(kiwami_interpolation, geometry_id, 112);
+  FIELD(kiwami_interpolation, geometry, 128);
+  FIELD(kiwami_interpolation, reserved, 132);
+  FIELD(kiwami_interpolation, values, 136);
+  FIELD(kiwami_interpolation, value_stride, 144);
+  FIELD(kiwami_interpolation, derivatives_u, 152);
+  FIELD(kiwami_interpolation, derivative_u_stride, 160);
+  FIELD(kiwami_interpolation, derivatives_v, 168);
+  FIELD(kiwami_interpolation, derivative_v_stride, 176);
+}
+
 static void check_numbers(void) {
   expect("KIWAMI_ERROR_INVALID_ARGUMENT", (size_t)-KIWAMI_ERROR_INVALID_ARGUMENT, 1);
   expect("KIWAMI_ERROR_INVALID_STATE", (size_t)-KIWAMI_ERROR_INVALID_STATE, 2);
@@ -526,6 +551,7 @@ int main(void) {
     check_fields();
     check_bvh_desc();
     check_light_descs();
+    check_interpolation();
   }
   check_infos_and_query();
   check_bvh();

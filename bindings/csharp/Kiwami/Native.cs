@@ -561,6 +561,32 @@ internal unsafe struct kiwami_curves_desc {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_interpolation {
+  public uint struct_size;
+  public uint channels;
+  public IntPtr attributes;
+  public ulong attribute_offset;
+  public ulong attribute_stride;
+  public ulong attribute_count;
+  public IntPtr indices;
+  public ulong index_offset;
+  public ulong index_stride;
+  public kiwami_input_field primitive_id;
+  public kiwami_input_field u;
+  public kiwami_input_field v;
+  public kiwami_input_field geometry_id;
+  public uint geometry;
+  public uint reserved;
+  public IntPtr values;
+  public ulong value_stride;
+  public IntPtr derivatives_u;
+  public ulong derivative_u_stride;
+  public IntPtr derivatives_v;
+  public ulong derivative_v_stride;
+  public const int Size = 184;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_user_hit {
   public float t;
   public float u;
@@ -990,6 +1016,18 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_curves_create(IntPtr device, IntPtr desc, IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_interpolation_init(IntPtr interpolation, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_interpolate(IntPtr mesh, IntPtr interpolation, UIntPtr count);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_hit_points(IntPtr scene, IntPtr hits, UIntPtr hit_stride, UIntPtr count, IntPtr points, UIntPtr point_stride, IntPtr errors, UIntPtr error_stride);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_offset_origins(IntPtr scene, IntPtr hits, UIntPtr hit_stride, IntPtr directions, UIntPtr direction_stride, UIntPtr count, IntPtr origins, UIntPtr origin_stride);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_user_geometry_desc_init(IntPtr desc, UIntPtr size);

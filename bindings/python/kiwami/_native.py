@@ -688,6 +688,32 @@ class kiwami_curves_desc(ctypes.Structure):
     ]
 
 
+class kiwami_interpolation(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("channels", ctypes.c_uint32),
+        ("attributes", ctypes.c_void_p),
+        ("attribute_offset", ctypes.c_uint64),
+        ("attribute_stride", ctypes.c_uint64),
+        ("attribute_count", ctypes.c_uint64),
+        ("indices", ctypes.c_void_p),
+        ("index_offset", ctypes.c_uint64),
+        ("index_stride", ctypes.c_uint64),
+        ("primitive_id", kiwami_input_field),
+        ("u", kiwami_input_field),
+        ("v", kiwami_input_field),
+        ("geometry_id", kiwami_input_field),
+        ("geometry", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+        ("values", ctypes.c_void_p),
+        ("value_stride", ctypes.c_uint64),
+        ("derivatives_u", ctypes.c_void_p),
+        ("derivative_u_stride", ctypes.c_uint64),
+        ("derivatives_v", ctypes.c_void_p),
+        ("derivative_v_stride", ctypes.c_uint64),
+    ]
+
+
 class kiwami_user_hit(ctypes.Structure):
     _fields_ = [
         ("t", ctypes.c_float),
@@ -770,6 +796,7 @@ SIZES = {
     kiwami_spheres_desc: 48,
     kiwami_discs_desc: 72,
     kiwami_curves_desc: 80,
+    kiwami_interpolation: 184,
     kiwami_user_hit: 32,
     kiwami_user_intersection: 48,
     kiwami_user_geometry_desc: 56,
@@ -1154,6 +1181,32 @@ def declare(library):
     library.kiwami_discs_create.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
     library.kiwami_curves_create.restype = ctypes.c_int32
     library.kiwami_curves_create.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_interpolation_init.restype = ctypes.c_int32
+    library.kiwami_interpolation_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_interpolate.restype = ctypes.c_int32
+    library.kiwami_interpolate.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_hit_points.restype = ctypes.c_int32
+    library.kiwami_hit_points.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+    ]
+    library.kiwami_offset_origins.restype = ctypes.c_int32
+    library.kiwami_offset_origins.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+    ]
     library.kiwami_user_geometry_desc_init.restype = ctypes.c_int32
     library.kiwami_user_geometry_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
     library.kiwami_user_geometry_create.restype = ctypes.c_int32

@@ -742,6 +742,33 @@ const _: () = assert!(std::mem::size_of::<kiwami_curves_desc>() == 80);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct kiwami_interpolation {
+    pub struct_size: u32,
+    pub channels: u32,
+    pub attributes: *const c_void,
+    pub attribute_offset: u64,
+    pub attribute_stride: u64,
+    pub attribute_count: u64,
+    pub indices: *const c_void,
+    pub index_offset: u64,
+    pub index_stride: u64,
+    pub primitive_id: kiwami_input_field,
+    pub u: kiwami_input_field,
+    pub v: kiwami_input_field,
+    pub geometry_id: kiwami_input_field,
+    pub geometry: u32,
+    pub reserved: u32,
+    pub values: *mut c_void,
+    pub value_stride: u64,
+    pub derivatives_u: *mut c_void,
+    pub derivative_u_stride: u64,
+    pub derivatives_v: *mut c_void,
+    pub derivative_v_stride: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_interpolation>() == 184);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct kiwami_user_hit {
     pub t: f32,
     pub u: f32,
@@ -876,6 +903,10 @@ extern "C" {
     pub fn kiwami_spheres_create(device: *mut kiwami_device, desc: *const kiwami_spheres_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
     pub fn kiwami_discs_create(device: *mut kiwami_device, desc: *const kiwami_discs_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
     pub fn kiwami_curves_create(device: *mut kiwami_device, desc: *const kiwami_curves_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
+    pub fn kiwami_interpolation_init(interpolation: *mut kiwami_interpolation, size: usize) -> kiwami_result;
+    pub fn kiwami_interpolate(mesh: *const kiwami_geometry, interpolation: *const kiwami_interpolation, count: usize) -> kiwami_result;
+    pub fn kiwami_hit_points(scene: *const kiwami_scene, hits: *const kiwami_hit, hit_stride: usize, count: usize, points: *mut f32, point_stride: usize, errors: *mut f32, error_stride: usize) -> kiwami_result;
+    pub fn kiwami_offset_origins(scene: *const kiwami_scene, hits: *const kiwami_hit, hit_stride: usize, directions: *const f32, direction_stride: usize, count: usize, origins: *mut f32, origin_stride: usize) -> kiwami_result;
     pub fn kiwami_user_geometry_desc_init(desc: *mut kiwami_user_geometry_desc, size: usize) -> kiwami_result;
     pub fn kiwami_user_geometry_create(device: *mut kiwami_device, desc: *const kiwami_user_geometry_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
 }

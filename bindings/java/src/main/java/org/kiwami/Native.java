@@ -643,6 +643,32 @@ final class Native {
     static final int RESERVED = 76;
   }
 
+  /** Offsets of kiwami_interpolation. */
+  static final class Interpolation {
+    static final int STRUCT_BYTES = 184;
+    static final int STRUCT_SIZE = 0;
+    static final int CHANNELS = 4;
+    static final int ATTRIBUTES = 8;
+    static final int ATTRIBUTE_OFFSET = 16;
+    static final int ATTRIBUTE_STRIDE = 24;
+    static final int ATTRIBUTE_COUNT = 32;
+    static final int INDICES = 40;
+    static final int INDEX_OFFSET = 48;
+    static final int INDEX_STRIDE = 56;
+    static final int PRIMITIVE_ID = 64;
+    static final int U = 80;
+    static final int V = 96;
+    static final int GEOMETRY_ID = 112;
+    static final int GEOMETRY = 128;
+    static final int RESERVED = 132;
+    static final int VALUES = 136;
+    static final int VALUE_STRIDE = 144;
+    static final int DERIVATIVES_U = 152;
+    static final int DERIVATIVE_U_STRIDE = 160;
+    static final int DERIVATIVES_V = 168;
+    static final int DERIVATIVE_V_STRIDE = 176;
+  }
+
   /** Offsets of kiwami_user_hit. */
   static final class UserHit {
     static final int STRUCT_BYTES = 32;
@@ -869,6 +895,14 @@ final class Native {
   static native int kiwami_discs_create(Pointer device, Pointer desc, Pointer geometry);
 
   static native int kiwami_curves_create(Pointer device, Pointer desc, Pointer geometry);
+
+  static native int kiwami_interpolation_init(Pointer interpolation, long size);
+
+  static native int kiwami_interpolate(Pointer mesh, Pointer interpolation, long count);
+
+  static native int kiwami_hit_points(Pointer scene, Pointer hits, long hitStride, long count, Pointer points, long pointStride, Pointer errors, long errorStride);
+
+  static native int kiwami_offset_origins(Pointer scene, Pointer hits, long hitStride, Pointer directions, long directionStride, long count, Pointer origins, long originStride);
 
   static native int kiwami_user_geometry_desc_init(Pointer desc, long size);
 
