@@ -13,6 +13,9 @@ endif()
 if(KIWAMI_WARNINGS_AS_ERRORS)
   target_compile_options(kiwami_options INTERFACE -Werror)
 endif()
+if(KIWAMI_FUZZ)
+  target_compile_options(kiwami_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 if(KIWAMI_SANITIZE)
   target_compile_options(kiwami_options INTERFACE -fsanitize=${KIWAMI_SANITIZE}
                                                   -fno-omit-frame-pointer

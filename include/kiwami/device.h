@@ -67,6 +67,10 @@ typedef struct kiwami_device_desc {
   void* allocator_user;
   kiwami_log log; /* NULL: silence */
   void* log_user;
+  uint64_t memory_limit; /* bytes that the device and all that is made from it may hold at once; 0:
+                          * no limit. A call that needs more returns KIWAMI_ERROR_OUT_OF_MEMORY, as
+                          * if the allocator had failed. Files that are mapped and buffers that are
+                          * shared do not count. */
 } kiwami_device_desc;
 
 /* What a device turned out to be. */
@@ -80,6 +84,9 @@ typedef struct kiwami_device_info {
   uint32_t default_bvh_width; /* the width of scenes that do not choose one */
   uint32_t thread_count;      /* threads that builds and batches use at once */
   uint32_t reserved;          /* 0 */
+  uint64_t memory_bytes;      /* that the device and all that was made from it hold now */
+  uint64_t memory_peak_bytes; /* the most that they held at once */
+  uint64_t memory_limit;      /* as in kiwami_device_desc */
 } kiwami_device_info;
 
 /* Fills *desc with the defaults: automatic ISA, one thread per processor, the library's own tasks

@@ -108,8 +108,8 @@ KIWAMI_API kiwami_result kiwami_load_desc_init(kiwami_load_desc* desc, size_t si
  * triangles and representative rays are not saved; the geometries keep their numbers.
  *   bytes     receives the size of the file, also where it did not fit into data. May be NULL.
  *   errors    INVALID_ARGUMENT: scene or desc is NULL, a field of desc, data that is too small;
- *             INVALID_STATE: never committed; IO: a file could not be written; CALLBACK: write
- *             failed; OUT_OF_MEMORY
+ *             INVALID_STATE: never committed, or a scene that holds more than static triangle
+ *             meshes; IO: a file could not be written; CALLBACK: write failed; OUT_OF_MEMORY
  * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_save(const kiwami_scene* scene, const kiwami_save_desc* desc,
                                            uint64_t* bytes);

@@ -83,7 +83,7 @@ Device* Device::create(const kiwami_device_desc& desc) {
   check_fields(desc);
   const uint32_t isa = choose_isa(desc.isa);
   // The device's own bytes cannot be counted by the memory that lies in them.
-  const Allocator allocator{desc.allocate, desc.deallocate, desc.allocator_user};
+  const Allocator allocator{desc.allocate, desc.deallocate, desc.allocator_user, nullptr};
   void* place = allocator.allocate(sizeof(Device), alignof(Device));
   try {
     return ::new (place) Device(desc, isa);
@@ -94,13 +94,15 @@ Device* Device::create(const kiwami_device_desc& desc) {
 }
 
 void Device::destroy(Device* device) noexcept {
-  const Allocator allocator = device->memory_.allocator();
+  Allocator allocator = device->memory_.allocator();
+  allocator.budget = nullptr;  // which ends with the device
   device->~Device();
   allocator.deallocate(device, sizeof(Device), alignof(Device));
 }
 
 Device::Device(const kiwami_device_desc& desc, uint32_t isa)
-    : memory_(desc.allocate, desc.deallocate, desc.allocator_user),
+    : budget_(desc.memory_limit),
+      memory_(Allocator{desc.allocate, desc.deallocate, desc.allocator_user, &budget_}),
       parallel_(desc.thread_count, desc.runner, desc.runner_user, desc.runner_width),
       isa_(isa),
       flags_(desc.flags),
@@ -116,6 +118,10 @@ kiwami_device_info Device::info() const {
   info.native_widths = native_widths_of(isa_);
   info.default_bvh_width = default_width_of(isa_);
   info.thread_count = parallel_.width();
+  // The device's own bytes lie beside the memory that it counts.
+  info.memory_bytes = budget_.bytes_in_use() + sizeof(*this);
+  info.memory_peak_bytes = budget_.peak_bytes() + sizeof(*this);
+  info.memory_limit = budget_.limit();
   return info;
 }
 

@@ -32,6 +32,7 @@ class Device : public Object<Device> {
   }
 
  private:
+  MemoryBudget budget_;
   Memory memory_;
   Parallel parallel_;
   uint32_t isa_;

@@ -35,11 +35,28 @@ void* allocate_from_runtime(size_t size, size_t alignment) {
 
 }  // namespace
 
+void MemoryBudget::take(size_t size) {
+  const uint64_t in_use = in_use_.fetch_add(size, std::memory_order_relaxed) + size;
+  if (limit_ != 0 && in_use > limit_) {
+    give_back(size);
+    throw Error(KIWAMI_ERROR_OUT_OF_MEMORY,
+                "allocation of %zu bytes would make %llu of the device, expected at most "
+                "desc.memory_limit, which is %llu",
+                size, static_cast<unsigned long long>(in_use),
+                static_cast<unsigned long long>(limit_));
+  }
+  uint64_t peak = peak_bytes();
+  while (peak < in_use && !peak_.compare_exchange_weak(peak, in_use, std::memory_order_relaxed)) {
+  }
+}
+
 void* Allocator::allocate(size_t size, size_t alignment) const {
   if (size == 0) return nullptr;
+  if (budget) budget->take(size);
   void* memory = allocate_function ? allocate_function(user, size, alignment)
                                    : allocate_from_runtime(size, alignment);
   if (!memory) {
+    if (budget) budget->give_back(size);
     throw Error(KIWAMI_ERROR_OUT_OF_MEMORY,
                 "allocation of %zu bytes at a multiple of %zu failed, expected memory", size,
                 alignment);
@@ -55,6 +72,7 @@ void* Allocator::allocate(size_t size, size_t alignment) const {
 
 void Allocator::deallocate(void* memory, size_t size, size_t alignment) const noexcept {
   if (!memory) return;
+  if (budget) budget->give_back(size);
   if (allocate_function) {
     deallocate_function(user, memory, size, alignment);
   } else {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -12,11 +13,32 @@
 
 namespace kiwami {
 
+/// How much a device and all that is made from it hold, and may hold. Safe to use from any thread.
+class MemoryBudget {
+ public:
+  /// limit 0: none.
+  explicit MemoryBudget(uint64_t limit) : limit_(limit) {}
+
+  /// Throws Error(OUT_OF_MEMORY) where size more bytes would be too many, and then has not changed.
+  void take(size_t size);
+  void give_back(size_t size) noexcept { in_use_.fetch_sub(size, std::memory_order_relaxed); }
+
+  uint64_t limit() const { return limit_; }
+  uint64_t bytes_in_use() const { return in_use_.load(std::memory_order_relaxed); }
+  uint64_t peak_bytes() const { return peak_.load(std::memory_order_relaxed); }
+
+ private:
+  uint64_t limit_;
+  std::atomic<uint64_t> in_use_{0};
+  std::atomic<uint64_t> peak_{0};
+};
+
 /// Where memory comes from: the caller's functions, or the C++ runtime's when they are null.
 struct Allocator {
   kiwami_allocate allocate_function;
   kiwami_deallocate deallocate_function;
   void* user;
+  MemoryBudget* budget = nullptr;  ///< nullptr: nothing is counted
 
   /// Throws Error(OUT_OF_MEMORY) that names the size. size may be 0: returns nullptr.
   void* allocate(size_t size, size_t alignment) const;
@@ -27,7 +49,7 @@ struct Allocator {
 class Memory {
  public:
   Memory(kiwami_allocate allocate_function, kiwami_deallocate deallocate_function, void* user)
-      : allocator_{allocate_function, deallocate_function, user} {}
+      : allocator_{allocate_function, deallocate_function, user, nullptr} {}
   explicit Memory(const Allocator& allocator) : allocator_(allocator) {}
   Memory(const Memory&) = delete;
   Memory& operator=(const Memory&) = delete;

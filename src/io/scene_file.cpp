@@ -209,8 +209,8 @@ uint64_t save_scene(const Scene& scene, const CommittedScene& committed,
                     const kiwami_save_desc& desc) {
   if (!committed.is_plain()) {
     throw Error(KIWAMI_ERROR_INVALID_STATE,
-                "the scene has more than triangle meshes, expected these alone: files hold nothing "
-                "else");
+                "the scene holds more than static triangle meshes, expected nothing else: files "
+                "cannot hold it");
   }
   Memory& memory = scene.device().memory();
   const SceneRecord record = record_of(committed);

@@ -95,6 +95,35 @@ class RunnerLoop {
   std::exception_ptr exception_;
 };
 
+#if defined(KIWAMI_TASKING_TBB)
+/// One loop of tasks, which tells the tasks' own exceptions from those of the scheduler.
+class TaskLoop {
+ public:
+  TaskLoop(kiwami_parallel_task task, void* data) : task_(task), data_(data) {}
+
+  void run(size_t begin, size_t end) {
+    // Read first, so that threads do not fight for the line.
+    if (!has_begun()) has_begun_.store(true, std::memory_order_relaxed);
+    const DefaultFloatEnvironment environment;
+    try {
+      for (size_t index = begin; index != end; ++index) task_(data_, index);
+    } catch (...) {
+      has_failed_.store(true, std::memory_order_relaxed);
+      throw;
+    }
+  }
+
+  bool has_begun() const { return has_begun_.load(std::memory_order_relaxed); }
+  bool has_failed() const { return has_failed_.load(std::memory_order_relaxed); }
+
+ private:
+  kiwami_parallel_task task_;
+  void* data_;
+  std::atomic<bool> has_begun_{false};
+  std::atomic<bool> has_failed_{false};
+};
+#endif
+
 }  // namespace
 
 Parallel::Parallel(unsigned thread_count, kiwami_parallel_runner runner, void* runner_user,
@@ -159,15 +188,23 @@ void Parallel::run_unwatched(size_t count, kiwami_parallel_task task, void* data
     return;
   }
 #if defined(KIWAMI_TASKING_TBB)
-  arena_->tasks.execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, count, 1),
-        [&](const tbb::blocked_range<size_t>& range) {
-          const DefaultFloatEnvironment environment;
-          for (size_t index = range.begin(); index != range.end(); ++index) task(data, index);
-        },
-        tbb::simple_partitioner());
-  });
+  TaskLoop loop(task, data);
+  try {
+    arena_->tasks.execute([&] {
+      tbb::parallel_for(
+          tbb::blocked_range<size_t>(0, count, 1),
+          [&](const tbb::blocked_range<size_t>& range) { loop.run(range.begin(), range.end()); },
+          tbb::simple_partitioner());
+    });
+  } catch (...) {
+    if (loop.has_failed()) throw;
+    if (loop.has_begun()) {
+      throw Error(KIWAMI_ERROR_OUT_OF_MEMORY,
+                  "the task scheduler failed in the middle of a loop, expected threads and memory");
+    }
+    // The scheduler could not start a thread: it throws before anything has run.
+    run_here(count, task, data);
+  }
 #endif
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "api/api_support.h"
+#include "support/figures.h"
 
 namespace kiwami_api_tests {
 namespace {
@@ -116,6 +117,7 @@ TEST(Allocator, EveryFailureIsAnErrorAndLeaksNothing) {
     EXPECT_EQ(allocator.live_blocks, 0u) << failure;
     EXPECT_EQ(allocator.mismatches, 0u) << failure;
   }
+  kiwami_tests::print_figure("allocations failed, one run each", whole.calls);
 }
 
 TEST(Allocator, FailuresOnManyThreadsLeakNothing) {
@@ -147,6 +149,78 @@ TEST(Allocator, FailuresOnManyThreadsLeakNothing) {
   }
   EXPECT_EQ(allocator.live_bytes, 0u);
   EXPECT_EQ(allocator.mismatches, 0u);
+}
+
+kiwami_device_info info_of(const Device& device) {
+  kiwami_device_info info{};
+  info.struct_size = sizeof info;
+  EXPECT_EQ(kiwami_device_get_info(device.get(), &info), KIWAMI_OK) << last_error();
+  return info;
+}
+
+TEST(MemoryLimit, IsKeptToTheByteByEveryBuild) {
+  const Triangles triangles = random_triangles(5000, 4);
+  kiwami_device_desc desc = default_device();
+  desc.thread_count = 1;
+  uint64_t needed = 0;
+  {
+    const Device device = make_device(desc);
+    EXPECT_EQ(info_of(device).memory_limit, 0u);
+    const uint64_t empty = info_of(device).memory_bytes;
+    {
+      const Scene scene = make_scene(device, make_mesh(device, triangles.desc()));
+      needed = info_of(device).memory_peak_bytes;
+      EXPECT_GE(info_of(device).memory_bytes, info_of(scene).total_bytes);
+      EXPECT_LE(info_of(device).memory_bytes, info_of(scene).total_bytes + 16384);
+      EXPECT_GE(needed, info_of(scene).peak_build_bytes);
+    }
+    EXPECT_EQ(info_of(device).memory_bytes, empty);
+    EXPECT_EQ(info_of(device).memory_peak_bytes, needed);
+  }
+  const uint64_t device_bytes = info_of(make_device(desc)).memory_bytes;
+  for (const uint64_t limit : {needed - device_bytes, needed - device_bytes - 1}) {
+    desc.memory_limit = limit;
+    const Device device = make_device(desc);
+    EXPECT_EQ(info_of(device).memory_limit, limit);
+    const Scene scene = make_scene(device);
+    const Geometry mesh = make_mesh(device, triangles.desc());
+    ASSERT_EQ(kiwami_scene_attach(scene.get(), mesh.get(), nullptr), KIWAMI_OK);
+    if (limit == needed - device_bytes) {
+      EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
+    } else {
+      EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_ERROR_OUT_OF_MEMORY);
+      EXPECT_NE(last_error().find("expected at most desc.memory_limit, which is " +
+                                  std::to_string(limit)),
+                std::string::npos)
+          << last_error();
+    }
+    EXPECT_LE(info_of(device).memory_peak_bytes, limit + device_bytes);
+  }
+}
+
+TEST(MemoryLimit, LeavesWhatWasCommittedUsable) {
+  kiwami_device_desc desc = default_device();
+  desc.memory_limit = 400000;
+  const Device device = make_device(desc);
+  const Scene scene = make_scene(device, make_mesh(device, square(1).desc()));
+  const kiwami_hit before = closest_hit(scene, ray_along_z(0.2f, 0.1f));
+  const uint64_t bytes = info_of(device).memory_bytes;
+  {
+    const Geometry large = make_mesh(device, random_triangles(4000, 2).desc());
+    ASSERT_EQ(kiwami_scene_attach(scene.get(), large.get(), nullptr), KIWAMI_OK) << last_error();
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_ERROR_OUT_OF_MEMORY);
+    ASSERT_EQ(kiwami_scene_detach(scene.get(), 1), KIWAMI_OK);
+  }
+  kiwami_triangle_mesh_desc huge = default_mesh();
+  const std::vector<float> vertices(300000);
+  huge.vertices = vertices.data();
+  huge.vertex_count = vertices.size() / 3;
+  kiwami_geometry* none = nullptr;
+  EXPECT_EQ(kiwami_triangle_mesh_create(device.get(), &huge, &none), KIWAMI_ERROR_OUT_OF_MEMORY);
+  EXPECT_EQ(none, nullptr);
+  EXPECT_LE(info_of(device).memory_bytes, bytes + 1024);
+  EXPECT_TRUE(are_equal({closest_hit(scene, ray_along_z(0.2f, 0.1f))}, {before}));
+  EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
 }
 
 TEST(Allocator, MisalignedBlocksAreRefused) {

@@ -6,6 +6,8 @@
 
 #include "api/io_support.h"
 #include "support/environment.h"
+#include "support/exercise.h"
+#include "support/figures.h"
 #include "support/random.h"
 
 namespace kiwami_api_tests {
@@ -30,30 +32,6 @@ Bytes small_bvh_file(const Device& device) {
   return saved(Bvh(bvh));
 }
 
-/// Does with what was loaded all that reads it.
-void use(const Scene& scene) {
-  const std::vector<kiwami_ray> rays = random_rays(16, 3);
-  closest_hits(scene, rays);
-  const Bvh bvh = bvh_of(scene);
-  kiwami_bvh_measure(bvh.get(), nullptr, nullptr, nullptr, 0);
-  kiwami_scene_validate(scene.get());
-  kiwami_scene_commit(scene.get());
-}
-
-void use(const Bvh& bvh) {
-  kiwami_bvh_measure(bvh.get(), nullptr, nullptr, nullptr, 0);
-  kiwami_bvh_validate(bvh.get());
-  kiwami_bvh_refit(bvh.get(), nullptr, 0, 0);
-  size_t nodes = 0, primitives = 0;
-  if (kiwami_bvh_export_counts(bvh.get(), KIWAMI_EXPORT_WIDE8, &nodes, &primitives) != KIWAMI_OK) {
-    return;
-  }
-  std::vector<kiwami_wide8_node> to(nodes);
-  std::vector<kiwami_bvh_primitive> names(primitives);
-  kiwami_bvh_export(bvh.get(), KIWAMI_EXPORT_WIDE8, to.data(), nodes * sizeof to[0], names.data(),
-                    primitives);
-}
-
 /// Where nothing stands that means anything: between sections, and in sections that may be passed
 /// over. A bit changed there changes nothing.
 bool is_padding(const Bytes& original, size_t at) {
@@ -70,6 +48,7 @@ TEST(DamagedFile, IsRefusedWithEveryBitFlipped) {
   const Device device = make_device();
   const Bytes original = small_scene_file(device, 4);
   const uint64_t step = std::max<uint64_t>(1, 8 / kiwami_tests::case_budget(8));
+  uint64_t flipped = 0;
   for (uint64_t bit = 0; bit < original.size() * 8; bit += step) {
     const auto at = static_cast<size_t>(bit / 8);
     if (is_padding(original, at)) continue;
@@ -77,7 +56,9 @@ TEST(DamagedFile, IsRefusedWithEveryBitFlipped) {
     file[at] = static_cast<unsigned char>(file[at] ^ 1u << bit % 8);
     Scene scene;
     ASSERT_EQ(load(device, file, 0, scene), KIWAMI_ERROR_INVALID_FILE) << bit;
+    ++flipped;
   }
+  kiwami_tests::print_figure("bits flipped in a file, one at a time: refused", flipped);
 }
 
 TEST(DamagedFile, IsRefusedCutAtEveryLength) {
@@ -94,6 +75,7 @@ TEST(DamagedFile, IsRefusedCutAtEveryLength) {
     const Bytes file(bvh_file.begin(), bvh_file.begin() + static_cast<std::ptrdiff_t>(size));
     ASSERT_EQ(load(device, file, 0, bvh), KIWAMI_ERROR_INVALID_FILE) << size;
   }
+  kiwami_tests::print_figure("cuts of a file: refused", scene_file.size() + bvh_file.size());
 }
 
 /// Every bit flipped, and every checksum made right again.
@@ -117,7 +99,7 @@ void use_with_every_bit_forged(const Bytes& original) {
       const kiwami_result result = load(device, file, 0, handle);
       if (result == KIWAMI_OK) {
         ++accepted;
-        use(handle);
+        kiwami_tests::exercise(handle.get());
       } else {
         ++refused;
         ASSERT_TRUE(result == KIWAMI_ERROR_INVALID_FILE || result == KIWAMI_ERROR_TOO_LARGE)
@@ -126,6 +108,8 @@ void use_with_every_bit_forged(const Bytes& original) {
     }
     EXPECT_GT(accepted, 0u);
     EXPECT_GT(refused, 0u);
+    kiwami_tests::print_figure("bits flipped and signed again: refused", refused);
+    kiwami_tests::print_figure("bits flipped and signed again: used without harm", accepted);
   }
   EXPECT_EQ(allocator.live_bytes, 0u);
 }

@@ -168,7 +168,7 @@ static void check_user_geometry(void) {
 
 /* The structs that hold pointers: their layout is that of 64-bit machines. */
 static void check_device_and_mesh(void) {
-  SIZE(kiwami_device_desc, 80);
+  SIZE(kiwami_device_desc, 88);
   FIELD(kiwami_device_desc, struct_size, 0);
   FIELD(kiwami_device_desc, isa, 4);
   FIELD(kiwami_device_desc, thread_count, 8);
@@ -182,6 +182,7 @@ static void check_device_and_mesh(void) {
   FIELD(kiwami_device_desc, allocator_user, 56);
   FIELD(kiwami_device_desc, log, 64);
   FIELD(kiwami_device_desc, log_user, 72);
+  FIELD(kiwami_device_desc, memory_limit, 80);
 
   SIZE(kiwami_triangle_mesh_desc, 80);
   FIELD(kiwami_triangle_mesh_desc, struct_size, 0);
@@ -236,7 +237,7 @@ static void check_fields(void) {
 }
 
 static void check_infos_and_query(void) {
-  SIZE(kiwami_device_info, 32);
+  SIZE(kiwami_device_info, 56);
   FIELD(kiwami_device_info, struct_size, 0);
   FIELD(kiwami_device_info, isa, 4);
   FIELD(kiwami_device_info, isa_available, 8);
@@ -245,6 +246,9 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_device_info, default_bvh_width, 20);
   FIELD(kiwami_device_info, thread_count, 24);
   FIELD(kiwami_device_info, reserved, 28);
+  FIELD(kiwami_device_info, memory_bytes, 32);
+  FIELD(kiwami_device_info, memory_peak_bytes, 40);
+  FIELD(kiwami_device_info, memory_limit, 48);
 
   SIZE(kiwami_scene_info, 152);
   FIELD(kiwami_scene_info, struct_size, 0);

@@ -55,7 +55,8 @@ internal unsafe struct kiwami_device_desc {
   public IntPtr allocator_user;
   public IntPtr log;
   public IntPtr log_user;
-  public const int Size = 80;
+  public ulong memory_limit;
+  public const int Size = 88;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -68,7 +69,10 @@ internal unsafe struct kiwami_device_info {
   public uint default_bvh_width;
   public uint thread_count;
   public uint reserved;
-  public const int Size = 32;
+  public ulong memory_bytes;
+  public ulong memory_peak_bytes;
+  public ulong memory_limit;
+  public const int Size = 56;
 }
 
 [StructLayout(LayoutKind.Sequential)]

@@ -235,7 +235,7 @@ exports.functions = [
 
 exports.structs = {
   kiwami_device_desc: {
-    size: 80,
+    size: 88,
     fields: {
       struct_size: 'uint32_t',
       isa: 'uint32_t',
@@ -250,10 +250,11 @@ exports.structs = {
       allocator_user: 'void *',
       log: 'void *',
       log_user: 'void *',
+      memory_limit: 'uint64_t',
     },
   },
   kiwami_device_info: {
-    size: 32,
+    size: 56,
     fields: {
       struct_size: 'uint32_t',
       isa: 'uint32_t',
@@ -263,6 +264,9 @@ exports.structs = {
       default_bvh_width: 'uint32_t',
       thread_count: 'uint32_t',
       reserved: 'uint32_t',
+      memory_bytes: 'uint64_t',
+      memory_peak_bytes: 'uint64_t',
+      memory_limit: 'uint64_t',
     },
   },
   kiwami_triangle_mesh_desc: {

@@ -183,6 +183,7 @@ class kiwami_device_desc(ctypes.Structure):
         ("allocator_user", ctypes.c_void_p),
         ("log", ctypes.c_void_p),
         ("log_user", ctypes.c_void_p),
+        ("memory_limit", ctypes.c_uint64),
     ]
 
 
@@ -196,6 +197,9 @@ class kiwami_device_info(ctypes.Structure):
         ("default_bvh_width", ctypes.c_uint32),
         ("thread_count", ctypes.c_uint32),
         ("reserved", ctypes.c_uint32),
+        ("memory_bytes", ctypes.c_uint64),
+        ("memory_peak_bytes", ctypes.c_uint64),
+        ("memory_limit", ctypes.c_uint64),
     ]
 
 
@@ -756,8 +760,8 @@ class kiwami_user_geometry_desc(ctypes.Structure):
 
 
 SIZES = {
-    kiwami_device_desc: 80,
-    kiwami_device_info: 32,
+    kiwami_device_desc: 88,
+    kiwami_device_info: 56,
     kiwami_triangle_mesh_desc: 80,
     kiwami_scene_info: 152,
     kiwami_ray: 48,

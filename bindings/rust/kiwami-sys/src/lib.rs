@@ -196,8 +196,9 @@ pub struct kiwami_device_desc {
     pub allocator_user: *mut c_void,
     pub log: kiwami_log,
     pub log_user: *mut c_void,
+    pub memory_limit: u64,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_device_desc>() == 80);
+const _: () = assert!(std::mem::size_of::<kiwami_device_desc>() == 88);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -210,8 +211,11 @@ pub struct kiwami_device_info {
     pub default_bvh_width: u32,
     pub thread_count: u32,
     pub reserved: u32,
+    pub memory_bytes: u64,
+    pub memory_peak_bytes: u64,
+    pub memory_limit: u64,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_device_info>() == 32);
+const _: () = assert!(std::mem::size_of::<kiwami_device_info>() == 56);
 
 #[repr(C)]
 #[derive(Clone, Copy)]

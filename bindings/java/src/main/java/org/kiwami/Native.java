@@ -125,7 +125,7 @@ final class Native {
 
   /** Offsets of kiwami_device_desc. */
   static final class DeviceDesc {
-    static final int STRUCT_BYTES = 80;
+    static final int STRUCT_BYTES = 88;
     static final int STRUCT_SIZE = 0;
     static final int ISA = 4;
     static final int THREAD_COUNT = 8;
@@ -139,11 +139,12 @@ final class Native {
     static final int ALLOCATOR_USER = 56;
     static final int LOG = 64;
     static final int LOG_USER = 72;
+    static final int MEMORY_LIMIT = 80;
   }
 
   /** Offsets of kiwami_device_info. */
   static final class DeviceInfo {
-    static final int STRUCT_BYTES = 32;
+    static final int STRUCT_BYTES = 56;
     static final int STRUCT_SIZE = 0;
     static final int ISA = 4;
     static final int ISA_AVAILABLE = 8;
@@ -152,6 +153,9 @@ final class Native {
     static final int DEFAULT_BVH_WIDTH = 20;
     static final int THREAD_COUNT = 24;
     static final int RESERVED = 28;
+    static final int MEMORY_BYTES = 32;
+    static final int MEMORY_PEAK_BYTES = 40;
+    static final int MEMORY_LIMIT = 48;
   }
 
   /** Offsets of kiwami_triangle_mesh_desc. */
