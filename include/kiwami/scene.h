@@ -236,12 +236,10 @@ KIWAMI_API const char* kiwami_method_name(uint32_t stage, uint32_t method);
 
 /* Sets who is told how far the next commits and refits of the scene are, and may cancel them. A
  * commit that is cancelled returns KIWAMI_ERROR_CANCELLED, soon: no task begins any more; a method
- * that runs on one thread (such as KIWAMI_OPTIMIZER_REINSERTION) ends first. As after every error, the last committed structure stays in use, the scene can be edited, and nothing is
- * left of the commit.
- *   function  NULL: nobody, the default
- *   user      handed to function as it is
- *   errors    INVALID_ARGUMENT: scene is NULL
- * [one thread per object]; since 0.1 */
+ * that runs on one thread (such as KIWAMI_OPTIMIZER_REINSERTION) ends first. As after every error,
+ * the last committed structure stays in use, the scene can be edited, and nothing is left of the
+ * commit. function  NULL: nobody, the default user      handed to function as it is errors
+ * INVALID_ARGUMENT: scene is NULL [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_set_progress(kiwami_scene* scene, kiwami_progress function,
                                                    void* user);
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "core/error.h"
+#include "kiwami/base.h"
 #include "math/bounds.h"
 
 namespace kiwami {
@@ -56,21 +56,8 @@ struct TriangleMeshView {
 
   /// For indices that may have changed since they were checked: throws Error(INVALID_ARGUMENT) for
   /// one at or beyond the vertex count.
-  void checked_indices_of(uint32_t primitive, uint32_t index[3]) const {
-    indices_of(primitive, index);
-    for (uint32_t k = 0; k < 3; ++k) {
-      if (index[k] < vertex_count) continue;
-      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
-                  "index %u of triangle %u of geometry %u is %u, expected less than its vertex "
-                  "count, which is %zu",
-                  k, primitive, geometry_id, index[k], vertex_count);
-    }
-  }
-  void checked_corners_of(uint32_t primitive, Vec3f corner[3]) const {
-    uint32_t index[3];
-    checked_indices_of(primitive, index);
-    read_vertices(index, corner);
-  }
+  void checked_indices_of(uint32_t primitive, uint32_t index[3]) const;
+  void checked_corners_of(uint32_t primitive, Vec3f corner[3]) const;
 
  private:
   void read_vertices(const uint32_t index[3], Vec3f corner[3]) const {

@@ -18,8 +18,8 @@ uint32_t built_isas();
 /// The best ISA that is both built and runnable.
 uint32_t best_isa();
 
-/// The kernels of a width, for trees with leaves of one layout: those of the ISA, or the scalar ones
-/// where it has none. The ISA must be both built and runnable.
+/// The kernels of a width, for trees with leaves of one layout: those of the ISA, or the scalar
+/// ones where it has none. The ISA must be both built and runnable.
 TraversalKernels kernels_of(uint32_t isa, uint32_t width,
                             LeafLayout layout = LeafLayout::kTriangles);
 

@@ -137,7 +137,7 @@ struct SceneView {
   uint32_t range_count;
   uint32_t has_masks;  ///< 0: every geometry's mask is all ones
   uint32_t part_count;
-  const ScenePart* parts;  ///< everything but the static triangles; none is empty
+  const ScenePart* parts;                    ///< everything but the static triangles; none is empty
   const TriangleMeshView* meshes = nullptr;  ///< of each range, for leaves of ids alone
   uint64_t mesh_bytes = 0;                   ///< what rays may read of their buffers
 };

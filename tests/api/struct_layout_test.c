@@ -92,6 +92,8 @@ static void check_lights(void) {
   FIELD(kiwami_light_query, flags, 4);
   FIELD(kiwami_light_query, method, 8);
   FIELD(kiwami_light_query, reserved, 12);
+}
+
 /* Geometries that are no triangles. */
 static void check_shapes(void) {
   SIZE(kiwami_spheres_desc, 48);

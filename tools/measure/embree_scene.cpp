@@ -89,14 +89,4 @@ void EmbreeScene::release() {
   rtcReleaseDevice(device_);
 }
 
-std::string embree_config(uint32_t isa, uint32_t threads) {
-  std::string config = "threads=" + std::to_string(threads);
-  if (isa == KIWAMI_ISA_SCALAR) config += ",isa=sse2";
-  if (isa == KIWAMI_ISA_SSE) config += ",isa=sse4.2";
-  if (isa == KIWAMI_ISA_AVX2) config += ",isa=avx2";
-  // Embree keeps to 256 bits by itself unless it is told that the clock may fall.
-  if (isa == KIWAMI_ISA_AVX512) config += ",isa=avx512,frequency_level=simd512";
-  return config;
-}
-
 }  // namespace kiwami::tools
