@@ -12,8 +12,8 @@ namespace kiwami {
 /// them holds the image.
 class FileImage : public Object<FileImage> {
  public:
-  /// Throws Error(IO, CALLBACK, INVALID_ARGUMENT or OUT_OF_MEMORY). Takes no more memory than twice
-  /// what there is to read.
+  /// Throws Error(IO, CALLBACK, INVALID_ARGUMENT or OUT_OF_MEMORY). Takes no more memory than three
+  /// times what there is to read.
   static FileImage* create(Device& device, const kiwami_load_desc& desc);
   static void destroy(FileImage* image) noexcept;
 

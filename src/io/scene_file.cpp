@@ -123,6 +123,19 @@ WideTree tree_of(const SceneRecord& record, std::span<const unsigned char> bytes
   return tree;
 }
 
+/// Of a scene of nothing they are turned inside out and never used.
+void check_bounds(const SceneRecord& record) {
+  for (int axis = 0; axis < 3 && record.triangle_count != 0; ++axis) {
+    const float lower = record.bounds_min[axis], upper = record.bounds_max[axis];
+    // False where one is NaN.
+    if (-KIWAMI_MAX_COORDINATE <= lower && lower <= upper && upper <= KIWAMI_MAX_COORDINATE) {
+      continue;
+    }
+    fail("the scene reaches from %g to %g on axis %d, expected finite numbers",
+         static_cast<double>(lower), static_cast<double>(upper), axis);
+  }
+}
+
 /// One load, step by step.
 class SceneLoader {
  public:
@@ -158,6 +171,7 @@ class SceneLoader {
       fail("the scene has %llu triangles and skips %llu, expected all %llu of its meshes",
            ull{record.triangle_count}, ull{record.skipped_count}, ull{meshes.triangle_count()});
     }
+    if (!is_trusted_) check_bounds(record);
     SavedTree saved{image_,
                     tree_of(record, reader_.array<unsigned char>(SectionType::kTree)),
                     record.triangle_count,
