@@ -13,6 +13,7 @@ from .arrays import INVALID_ID, hit_dtype, make_rays, ray_dtype
 from .device import Device, default_device
 from .errors import (
     CallbackError,
+    CancelledError,
     CapacityError,
     InvalidArgumentError,
     InvalidFileError,
@@ -25,6 +26,7 @@ from .errors import (
     ValidationError,
 )
 from .hits import Hits
+from .lights import LightTree, light_dtype
 from .raycasting import RaycastingScene
 from .scene import Scene
 from .trimesh_ray import RayMeshIntersector
@@ -44,6 +46,7 @@ globals().update(
                 "KIWAMI_OPTIMIZER_",
                 "KIWAMI_CONTRACTION_",
                 "KIWAMI_QUALITY_",
+                "KIWAMI_LIGHT_",
             )
         )
     }
@@ -51,6 +54,7 @@ globals().update(
 
 __all__ = [
     "CallbackError",
+    "CancelledError",
     "CapacityError",
     "Device",
     "Hits",
@@ -61,6 +65,7 @@ __all__ = [
     "IoError",
     "KiwamiError",
     "OutOfMemoryError",
+    "LightTree",
     "RayMeshIntersector",
     "RaycastingScene",
     "Scene",
@@ -69,6 +74,7 @@ __all__ = [
     "ValidationError",
     "default_device",
     "hit_dtype",
+    "light_dtype",
     "make_rays",
     "ray_dtype",
 ]

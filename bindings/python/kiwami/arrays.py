@@ -64,6 +64,24 @@ def as_positions(values, name):
     return rows
 
 
+def as_dense_rows(values, width, name):
+    """float32 (count, width) without gaps."""
+    array = np.asarray(values)
+    rows, _ = as_float_rows(array.reshape(-1, width) if array.size == 0 else array, width, name)
+    return np.ascontiguousarray(rows)
+
+
+def as_index_column(values, limit, name):
+    """uint32 (count,) without gaps, each checked to be in 0 .. limit - 1."""
+    array = np.asarray(values)
+    if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
+        raise TypeError(f"{name} is {array.dtype} of shape {array.shape}, expected (N,) integers")
+    if array.size and (array.min() < 0 or array.max() >= limit):
+        bad = array.min() if array.min() < 0 else array.max()
+        raise ValueError(f"{name} holds {bad}, expected numbers from 0 to {limit - 1}")
+    return np.ascontiguousarray(array, np.uint32)
+
+
 def as_indices(values, limit, name):
     """uint32 (count, 3) of any integers, each checked to be in 0 .. limit - 1."""
     array = np.asarray(values)

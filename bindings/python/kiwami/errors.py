@@ -72,6 +72,12 @@ class InvalidFileError(KiwamiError, ValueError):
     result = _native.KIWAMI_ERROR_INVALID_FILE
 
 
+class CancelledError(KiwamiError, RuntimeError):
+    """A progress function ended a commit; what was committed before stays in use."""
+
+    result = _native.KIWAMI_ERROR_CANCELLED
+
+
 _BY_RESULT = {kind.result: kind for kind in KiwamiError.__subclasses__()}
 
 
