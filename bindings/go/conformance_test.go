@@ -14,6 +14,22 @@ import (
 	"testing"
 )
 
+// note says that a feature was found right, for the table of the documents.
+func note(features ...string) {
+	path := os.Getenv("KIWAMI_FEATURES")
+	if path == "" {
+		return
+	}
+	file, err := os.OpenFile(path, os.O_APPEND|os.O_CREATE|os.O_WRONLY, 0o644)
+	if err != nil {
+		panic(err)
+	}
+	defer file.Close()
+	for _, each := range features {
+		fmt.Fprintln(file, each)
+	}
+}
+
 // words reads the conformance vectors: answers that every binding must give, to the bit.
 type words struct {
 	t    *testing.T
@@ -114,6 +130,7 @@ func (w *words) checkFile(device *Device, scene *Scene, rays []Ray) {
 	}
 	_, err := LoadScene(device, "../conformance/vectors.txt", 0)
 	w.equal(err != nil, true)
+	note("files")
 }
 
 func (w *words) checkScene(device *Device) int {
@@ -160,6 +177,7 @@ func (w *words) checkScene(device *Device) int {
 		word = w.word()
 	}
 	w.equal(word, "end")
+	note("closest hit", "any hit", "multi hit", "counts")
 	return len(rays)
 }
 
@@ -212,6 +230,9 @@ func TestErrorsAreTheSame(t *testing.T) {
 	}
 	if len(found) != 0 {
 		t.Errorf("the vectors lack %v", found)
+	}
+	if !t.Failed() {
+		note("errors")
 	}
 }
 

@@ -48,6 +48,12 @@ public class ConformanceTest {
       File.ReadAllText(Environment.GetEnvironmentVariable("KIWAMI_VECTORS"));
   static readonly float[] Corners = { 0, 0, 0, 1, 0, 0, 0, 1, 0 };
 
+  /// Notes that features were found right, for the table of the documents.
+  static void Note(params string[] features) {
+    string path = Environment.GetEnvironmentVariable("KIWAMI_FEATURES");
+    if (path != null) File.AppendAllLines(path, features);
+  }
+
   static void CheckMultiHit(Words words, Scene scene, Ray[] rays) {
     uint maxHits = words.Int();
     ulong total = words.Number();
@@ -75,6 +81,7 @@ public class ConformanceTest {
     }
     File.Delete(saved);
     Assert.Throws<KiwamiException>(() => Scene.Load(device, Path.Combine(folder, "vectors.txt")));
+    Note("files");
   }
 
   static int CheckScene(Words words, Device device) {
@@ -105,6 +112,7 @@ public class ConformanceTest {
         word = words.Word();
       }
       Assert.AreEqual("end", word);
+      Note("closest hit", "any hit", "multi hit", "counts");
       return rays.Length;
     }
   }
@@ -136,6 +144,7 @@ public class ConformanceTest {
       ExpectError("unknown_geometry", () => scene.Remove(5));
       ExpectError("parameter_out_of_bounds", () => scene.SetParameter(4, 1000));
       ExpectError("not_committed", () => scene.ClosestHit(new Ray[1]));
+      Note("errors");
     }
   }
 

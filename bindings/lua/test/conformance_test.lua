@@ -19,6 +19,15 @@ local function equal(actual, expected, what)
   end
 end
 
+-- Notes that features were found right, for the table of the documents.
+local function note(...)
+  local path = os.getenv("KIWAMI_FEATURES")
+  if not path then return end
+  local file = assert(io.open(path, "a"))
+  for _, feature in ipairs({ ... }) do file:write(feature, "\n") end
+  file:close()
+end
+
 -- Words of the vectors, one after the other.
 local function reader(text)
   local next_word = text:gmatch("%S+")
@@ -73,6 +82,7 @@ local function check_file(words, device, scene, rays, count)
   end
   os.remove(saved)
   equal(pcall(kiwami.load_scene, "../conformance/vectors.txt"), false)
+  note("files")
 end
 
 local function check_scene(words, device)
@@ -102,6 +112,7 @@ local function check_scene(words, device)
     word = words.word()
   end
   equal(word, "end")
+  note("closest hit", "any hit", "multi hit", "counts")
   scene:close()
   return count
 end
@@ -140,6 +151,7 @@ function tests.errors_are_the_same()
     count = count + 1
   end
   equal(count, 4, "number of errors")
+  note("errors")
 end
 
 function tests.misuse_is_an_error()

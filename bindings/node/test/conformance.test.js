@@ -11,6 +11,12 @@ const { Device, Hits, KiwamiError, Rays, Scene, constants } = require('..');
 
 const vectors = fs.readFileSync(path.join(__dirname, '../../conformance/vectors.txt'), 'utf8');
 
+// Notes that features were found right, for the table of the documents.
+function note(...features) {
+  const file = process.env.KIWAMI_FEATURES;
+  if (file) fs.appendFileSync(file, features.map((each) => `${each}\n`).join(''));
+}
+
 class Words {
   constructor(text) {
     this.words = text.split(/\s+/);
@@ -54,6 +60,7 @@ function checkFile(words, device, scene, rays) {
   }
   fs.unlinkSync(saved);
   assert.throws(() => Scene.load(path.join(folder, 'vectors.txt')), KiwamiError);
+  note('files');
 }
 
 async function checkScene(words, device) {
@@ -81,6 +88,7 @@ async function checkScene(words, device) {
     word = words.word();
   }
   assert.strictEqual(word, 'end');
+  note('closest hit', 'any hit', 'multi hit', 'counts');
   scene.close();
   return rays.count;
 }
@@ -116,6 +124,7 @@ test('errors are the same', () => {
       return result === String(error.result);
     });
   }
+  note('errors');
 });
 
 test('misuse is an exception', () => {

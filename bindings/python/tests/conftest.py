@@ -1,8 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
+import os
+
 import numpy as np
 import pytest
 
 import kiwami
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "feature(*names): what the test shows to be right")
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(item, call):
+    """Notes the features of tests that passed, for the table of the documents."""
+    report = (yield).get_result()
+    path = os.environ.get("KIWAMI_FEATURES")
+    if path and report.when == "call" and report.passed:
+        with open(path, "a") as file:
+            for mark in item.iter_markers("feature"):
+                file.writelines(f"{name}\n" for name in mark.args)
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ import kiwami
 UP = [0, 0, 1]
 
 
+@pytest.mark.feature("moving vertices")
 def test_moved_vertices_are_hit_after_a_refit(sphere, random):
     vertices, faces = sphere
     scene = kiwami.Scene(vertices, faces)
@@ -43,6 +44,7 @@ def test_geometries_are_left_out_and_taken_in(sphere):
     assert scene.any([0, 0, -5], UP)
 
 
+@pytest.mark.feature("progress callback")
 def test_progress_is_told_and_can_cancel(sphere):
     scene = kiwami.Scene(*sphere)
     scene.add(sphere[0] + 5, sphere[1])
@@ -58,6 +60,7 @@ def test_progress_is_told_and_can_cancel(sphere):
     assert scene.any([5, 5, 0], UP)
 
 
+@pytest.mark.feature("spheres, discs, curves")
 def test_spheres_discs_and_curves():
     scene = kiwami.Scene()
     spheres = scene.add_spheres([[0, 0, 0, 1], [5, 0, 0, 0.5]])

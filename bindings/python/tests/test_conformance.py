@@ -24,6 +24,7 @@ def check_scene(scene, expected, rays):
 
 
 
+@pytest.mark.feature("closest hit", "any hit", "multi hit", "counts")
 @pytest.mark.parametrize("isa", ["auto", "scalar"])
 def test_answers_are_the_same_to_the_bit(isa):
     device = kiwami.Device(isa=isa, validate=True)
@@ -40,6 +41,7 @@ def test_answers_are_the_same_to_the_bit(isa):
     assert compared > 100
 
 
+@pytest.mark.feature("fields apart")
 def test_fields_that_lie_apart_give_the_same(random):
     for expected in vectors.scenes():
         scene = kiwami.Scene()
@@ -57,6 +59,7 @@ def test_fields_that_lie_apart_give_the_same(random):
         assert (words_of(hits) == expected["closest_hit"][rays["flags"] == 0]).all()
 
 
+@pytest.mark.feature("errors")
 def test_errors_are_the_same():
     scene = kiwami.Scene()
     calls = {

@@ -28,6 +28,7 @@ def test_a_file_gives_the_same_hits(ball, rays, tmp_path, options):
     assert loaded.closest([5.1, 5.1, 0], [0, 0, 1]).geometry_id == 1
 
 
+@pytest.mark.feature("files")
 def test_scenes_are_pickled_and_copied(ball, rays):
     for again in (pickle.loads(pickle.dumps(ball)), copy.deepcopy(ball)):
         assert same(ball, again, rays)

@@ -17,6 +17,7 @@ def lights():
     return tree
 
 
+@pytest.mark.feature("many lights")
 def test_probabilities_are_those_of_the_samples(lights, random):
     points = random.uniform([-5, -5, 0], [105, 5, 4], (2000, 3))
     normals = np.array([0, 0, 1.0])

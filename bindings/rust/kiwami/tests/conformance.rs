@@ -1,8 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //! The answers that every binding must give, to the bit.
+use std::io::Write;
+
 use kiwami::{Device, DeviceOptions, ErrorKind, Hit, Isa, Ray, Scene, SceneBuilder};
 
 const VECTORS: &str = include_str!("../../../conformance/vectors.txt");
+
+/// Notes that a feature was found right, for the table of the documents.
+fn note(feature: &str) {
+    if let Ok(path) = std::env::var("KIWAMI_FEATURES") {
+        let mut file = std::fs::OpenOptions::new().create(true).append(true).open(path).unwrap();
+        writeln!(file, "{feature}").unwrap();
+    }
+}
 
 struct Words<'a>(std::str::SplitAsciiWhitespace<'a>);
 
@@ -89,6 +99,7 @@ fn check_file(words: &mut Words, scene: &Scene, rays: &[Ray]) {
     }
     std::fs::remove_file(&saved).unwrap();
     assert!(Scene::load(scene.device(), &folder.join("vectors.txt")).is_err());
+    note("files");
 }
 
 /// One scene; returns how many answers were compared.
@@ -126,6 +137,7 @@ fn check_scene(words: &mut Words, device: &Device) -> usize {
         word = words.word();
     }
     assert_eq!(word, "end");
+    ["closest hit", "any hit", "multi hit", "counts"].map(note);
     rays.len()
 }
 
@@ -166,6 +178,7 @@ fn errors_are_the_same() {
         assert_eq!((error.result(), error.to_string().as_str()), expected_error(name));
         assert_eq!(error.kind(), ErrorKind::InvalidArgument);
     }
+    note("errors");
 }
 
 #[test]

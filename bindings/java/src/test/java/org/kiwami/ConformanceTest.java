@@ -11,6 +11,8 @@ import java.nio.charset.StandardCharsets;
 import java.nio.file.Files;
 import java.nio.file.Path;
 import java.nio.file.Paths;
+import java.nio.file.StandardOpenOption;
+import java.util.List;
 import java.util.Scanner;
 import org.junit.Test;
 
@@ -20,6 +22,15 @@ public class ConformanceTest {
     return new String(
         Files.readAllBytes(Paths.get(System.getProperty("kiwami.vectors"))),
         StandardCharsets.UTF_8);
+  }
+
+  /** Notes that features were found right, for the table of the documents. */
+  private static void note(String... features) throws IOException {
+    String path = System.getenv("KIWAMI_FEATURES");
+    if (path != null) {
+      Files.write(
+          Paths.get(path), List.of(features), StandardOpenOption.CREATE, StandardOpenOption.APPEND);
+    }
   }
 
   private static int word(Scanner words) {
@@ -65,6 +76,7 @@ public class ConformanceTest {
     assertThrows(
         KiwamiException.class,
         () -> Scene.load(device, folder.resolve("vectors.txt").toString()));
+    note("files");
   }
 
   private static void readMesh(Scanner words, Scene scene) {
@@ -110,6 +122,7 @@ public class ConformanceTest {
         name = words.next();
       }
       assertEquals("end", name);
+      note("closest hit", "any hit", "multi hit", "counts");
       return rays.count();
     }
   }
@@ -149,6 +162,7 @@ public class ConformanceTest {
           "parameter_out_of_bounds",
           () -> scene.setParameter(Native.KIWAMI_PARAMETER_BIN_COUNT, 1000));
       assertError("not_committed", () -> scene.closestHit(new Rays(1)));
+      note("errors");
     }
   }
 
