@@ -320,6 +320,26 @@ TEST(SaveError, NamesWhatIsWrongWithTheArguments) {
   EXPECT_EQ(kiwami_scene_save(make_scene(device).get(), &desc, &size), KIWAMI_ERROR_INVALID_STATE);
 }
 
+TEST(SaveError, RefusesWhatFilesCannotHold) {
+  const Device device = make_device();
+  const Scene scene = make_mixed_scene(device, 10, 4);
+  const float sphere[4] = {0, 0, 0, 1};
+  kiwami_spheres_desc desc;
+  ASSERT_EQ(kiwami_spheres_desc_init(&desc, sizeof desc), KIWAMI_OK);
+  desc.points = sphere;
+  desc.sphere_count = 1;
+  kiwami_geometry* spheres = nullptr;
+  ASSERT_EQ(kiwami_spheres_create(device.get(), &desc, &spheres), KIWAMI_OK) << last_error();
+  const Geometry owner(spheres);
+  ASSERT_EQ(kiwami_scene_attach(scene.get(), spheres, nullptr), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
+  const kiwami_save_desc save = default_save();
+  EXPECT_EQ(kiwami_scene_save(scene.get(), &save, nullptr), KIWAMI_ERROR_INVALID_STATE);
+  EXPECT_EQ(last_error(),
+            "the scene holds more than static triangle meshes, expected nothing else: files cannot "
+            "hold it");
+}
+
 TEST(SaveError, ReportsAFullDiskAndAFolderThatIsNone) {
   const Device device = make_device();
   const Scene scene = make_mixed_scene(device, 10, 4);

@@ -42,13 +42,15 @@ class Session {
         &Session::set_parameter, &Session::set_optimizers, &Session::commit,
         &Session::commit,        &Session::trace,          &Session::trace,
         &Session::trace_fields,  &Session::trace_many,     &Session::get_info,
-        &Session::get_bvh,       &Session::build_bvh,      &Session::refit_bvh,
-        &Session::save_and_load, &Session::exercise_all,   &Session::release};
+        &Session::create_shapes, &Session::edit_scene,     &Session::edit_mesh,
+        &Session::refit,         &Session::sample_lights,  &Session::get_bvh,
+        &Session::build_bvh,     &Session::refit_bvh,      &Session::save_and_load,
+        &Session::exercise_all,  &Session::release};
     (this->*kSteps[input_.below(std::size(kSteps))])();
   }
 
   kiwami_result check(kiwami_result result) {
-    require(result <= KIWAMI_OK && result >= KIWAMI_ERROR_IO, "a result that is none");
+    require(result <= KIWAMI_OK && result >= KIWAMI_ERROR_CANCELLED, "a result that is none");
     require(result != KIWAMI_ERROR_INTERNAL, "an internal error");
     if (result != KIWAMI_OK) {
       require(kiwami_last_error(nullptr, nullptr, 0) > 1, "an error without a sentence");
@@ -181,6 +183,82 @@ class Session {
     kiwami_scene* const target = scene();
     if (check(kiwami_scene_commit(target)) != KIWAMI_OK) return;
     require(kiwami_scene_validate(target) == KIWAMI_OK, "a tree that is not valid");
+  }
+
+  void create_shapes() {
+    const size_t count = input_.below(kMostElements);
+    const std::vector<float> points = numbers(4 * count);
+    kiwami_spheres_desc desc;
+    check(kiwami_spheres_desc_init(&desc, sizeof desc));
+    desc.points = points.data();
+    desc.sphere_count = count;
+    if (rarely()) desc.point_stride = 1 + input_.below(15);
+    if (rarely()) desc.struct_size = whole();
+    if (rarely()) desc.sphere_count = uint64_t{1} << (32 + input_.below(30));
+    kiwami_geometry* made = nullptr;
+    check(kiwami_spheres_create(device(), &desc, &made));
+    geometries_[slot()].reset(made);
+  }
+
+  void edit_scene() {
+    kiwami_scene* const target = scene();
+    check(kiwami_scene_enable(target, input_.below(4), static_cast<int32_t>(input_.below(2))));
+    check(kiwami_scene_replace(target, input_.below(4), geometry()));
+  }
+
+  void edit_mesh() {
+    // As many as a mesh of these calls can have, so that none reads beyond.
+    const std::vector<float> vertices = numbers(size_t{9} * kMostElements);
+    kiwami_geometry* const target = geometry();
+    check(kiwami_triangle_mesh_update_vertices(target, rarely() ? nullptr : vertices.data(), 0,
+                                               rarely() ? 5 : 0));
+    check(kiwami_geometry_set_mask(target, whole()));
+  }
+
+  /// A refit or a commit, which is cancelled after some steps.
+  void refit() {
+    kiwami_scene* const target = scene();
+    uint32_t steps = input_.below(12);
+    check(kiwami_scene_set_progress(
+        target,
+        [](void* user, double) {
+          uint32_t& left = *static_cast<uint32_t*>(user);
+          return int32_t{left == 0 ? 1 : (--left, 0)};
+        },
+        &steps));
+    check(input_.below(2) == 0 ? kiwami_scene_refit(target) : kiwami_scene_commit(target));
+    check(kiwami_scene_set_progress(target, nullptr, nullptr));
+    check(kiwami_scene_refit(target));
+  }
+
+  void sample_lights() {
+    kiwami_light_tree* tree = nullptr;
+    if (check(kiwami_light_tree_create(device(), nullptr, &tree)) != KIWAMI_OK) return;
+    std::vector<kiwami_light> lights(input_.below(kMostElements));
+    for (kiwami_light& light : lights) {
+      light = {};
+      light.type = rarely() ? whole() : input_.below(8);
+      light.flags = input_.below(2);
+      for (float& coordinate : light.points) coordinate = number();
+      for (float& coordinate : light.direction) coordinate = number();
+      light.radius = number();
+      light.cos_inner = 1.0f;
+      light.cos_outer = number();
+      light.power = rarely() ? number() : 1.0f;
+      light.link_mask = ~uint64_t{0};
+      // One by one: a wrong one refuses all.
+      check(kiwami_light_tree_add_lights(tree, &light, 0, 1, nullptr));
+    }
+    std::vector<kiwami_light_receiver> receivers(4);
+    std::vector<kiwami_light_choice> choices(4);
+    const std::vector<float> values = numbers(sizeof(kiwami_light_receiver));
+    std::memcpy(static_cast<void*>(receivers.data()), values.data(),
+                receivers.size() * sizeof receivers[0]);
+    check(kiwami_light_sample(tree, receivers.data(), 0, choices.data(), 0, 4, nullptr));
+    check(kiwami_light_tree_commit(tree));
+    check(kiwami_light_sample(tree, receivers.data(), 0, choices.data(), 0, 4, nullptr));
+    check(kiwami_light_tree_refit(tree));
+    kiwami_light_tree_release(tree);
   }
 
   std::vector<kiwami_ray> rays(size_t count) {

@@ -67,6 +67,7 @@ void exercise(kiwami_scene* scene) {
   if (check(kiwami_scene_get_bvh(scene, &bvh)) == KIWAMI_OK) exercise(bvh);
   kiwami_bvh_release(bvh);
   check(kiwami_scene_validate(scene));
+  check(kiwami_scene_refit(scene));
   check(kiwami_scene_commit(scene));
 }
 

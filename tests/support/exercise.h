@@ -6,8 +6,8 @@
 
 namespace kiwami_tests {
 
-/// Traces, looks at, measures, validates, exports and commits. Whatever the calls return is right
-/// but KIWAMI_ERROR_INTERNAL, which throws.
+/// Traces, looks at, measures, validates, exports, refits and commits. Whatever the calls return is
+/// right but KIWAMI_ERROR_INTERNAL, which throws.
 void exercise(kiwami_scene* scene);
 void exercise(kiwami_bvh* bvh);
 
