@@ -15,7 +15,10 @@ namespace {
 /// It does not depend on the number of threads, nor do the sums of costs.
 constexpr size_t kSubtreeCount = 1024;
 /// Subtrees that one task refits.
-constexpr size_t kSubtreesPerTask = 4;
+constexpr size_t kSubtreesPerTask = 8;
+/// How many leaves before its turn the ids of one are fetched into the caches, then the indices of
+/// its triangles, then their vertices: each names where the next lies.
+constexpr size_t kIdsAhead = 24, kIndicesAhead = 16, kVerticesAhead = 8;
 /// The frame is chosen anew when the tree reaches so many times as far from its centre as it would
 /// from its own: then its boxes lose digits, and the margins of its rays are needlessly wide.
 constexpr float kFrameSlack = 4.0f;
@@ -50,7 +53,30 @@ class CornerReader {
     return is_in_range(corner[0], corner[1], corner[2]);
   }
 
+  // Hints for triangles that are read soon: of the mesh of the last one alone.
+  void prefetch_indices(uint32_t id) const {
+    const uint32_t primitive = id - mesh_->first_id;
+    if (primitive >= mesh_->triangle_count || !mesh_->indices) return;
+    prefetch_element(mesh_->indices + primitive * mesh_->index_stride);
+  }
+  void prefetch_vertices(uint32_t id) const {
+    const uint32_t primitive = id - mesh_->first_id;
+    if (primitive >= mesh_->triangle_count) return;
+    uint32_t index[3];
+    mesh_->indices_of(primitive, index);
+    for (const uint32_t vertex : index) {
+      if (vertex >= mesh_->vertex_count) continue;
+      prefetch_element(mesh_->vertices + vertex * mesh_->vertex_stride);
+    }
+  }
+
  private:
+  /// Its 12 bytes may stand in two lines.
+  static void prefetch_element(const unsigned char* element) {
+    __builtin_prefetch(element);
+    __builtin_prefetch(element + 11);
+  }
+
   /// What can_be_hit says.
   static bool is_in_range(Float4 a, Float4 b, Float4 c) {
     constexpr float limit = KIWAMI_MAX_COORDINATE;
@@ -67,7 +93,7 @@ template <int N>
 class WideRefit {
  public:
   WideRefit(WideTree& tree, const TriangleSource& source, Memory& memory)
-      : tree_(tree), source_(source), nodes_(tree.nodes<N>()), entries_(memory) {}
+      : tree_(tree), source_(source), memory_(memory), nodes_(tree.nodes<N>()), entries_(memory) {}
 
   /// The box of the whole tree.
   Bounds run(const Parallel& parallel) {
@@ -75,15 +101,21 @@ class WideRefit {
     open_top();
     const size_t first = opened_, count = entries_.size() - opened_;
     parallel.for_blocks(count, kSubtreesPerTask, [&](size_t begin, size_t end) {
-      CornerReader corners(source_);
+      GrowingArray<ChildReference> leaves(memory_);
       for (size_t i = first + begin; i < first + end; ++i) {
-        Entry& entry = entries_[i];
-        entry.totals = {};
-        entry.box = refit(entry.reference, corners, entry.totals);
+        collect_leaves(entries_[i].reference, leaves);
+      }
+      Array<Bounds4> boxes(memory_, leaves.size());
+      Totals& totals = entries_[first + begin].totals;
+      totals = {};
+      refit_leaves(leaves, boxes, totals);
+      const Bounds4* next = boxes.begin();
+      for (size_t i = first + begin; i < first + end; ++i) {
+        entries_[i].box = refit(entries_[i].reference, next, totals);
       }
     });
     totals_ = {};
-    for (size_t i = first; i < entries_.size(); ++i) totals_.add(entries_[i].totals);
+    for (size_t i = 0; i < count; i += kSubtreesPerTask) totals_.add(entries_[first + i].totals);
     // Parents stand before their children.
     for (size_t i = opened_; i-- > 0;) close(entries_[i]);
     return entries_[0].box.bounds();
@@ -97,7 +129,7 @@ class WideRefit {
     ChildReference reference;
     size_t first_child;  ///< of an opened one: its slots' entries are from here on, by slot
     Bounds4 box;
-    Totals totals;
+    Totals totals;  ///< of its task, in the first entry of that
   };
 
   /// Opens references breadth first, up to a leaf or to the number of subtrees.
@@ -133,13 +165,69 @@ class WideRefit {
     count_node(box, totals_);
   }
 
-  Bounds4 refit(ChildReference reference, CornerReader& corners, Totals& totals) {
-    if (reference.is_leaf()) return refit_leaf(reference, corners, totals);
+  /// In the order in which refit meets them.
+  void collect_leaves(ChildReference reference, GrowingArray<ChildReference>& leaves) const {
+    if (reference.is_leaf()) {
+      leaves.push_back(reference);
+      return;
+    }
+    const WideNode<N>& node = node_of(reference);
+    for (uint32_t mask = reference.mask(); mask != 0; mask &= mask - 1) {
+      const ChildReference child = node.child[std::countr_zero(mask)];
+      if (!child.is_leaf()) prefetch(&node_of(child), sizeof(WideNode<N>));
+    }
+    for (uint32_t mask = reference.mask(); mask != 0; mask &= mask - 1) {
+      collect_leaves(node.child[std::countr_zero(mask)], leaves);
+    }
+  }
+
+  static void prefetch(const void* address, size_t bytes) {
+    constexpr size_t kLine = 64;
+    for (size_t i = 0; i < bytes; i += kLine) {
+      __builtin_prefetch(static_cast<const char*>(address) + i, 1);
+    }
+  }
+
+  /// One after the other, each fetched from memory step by step while others are computed.
+  void refit_leaves(const GrowingArray<ChildReference>& leaves, Array<Bounds4>& boxes,
+                    Totals& totals) const {
+    CornerReader corners(source_);
+    const size_t count = leaves.size();
+    for (size_t turn = 0; turn < count + kIdsAhead; ++turn) {
+      if (turn < count) {
+        prefetch(tree_.template blocks<unsigned char>() +
+                     tree_.number_of(leaves[turn]) * tree_.leaf_block_bytes(),
+                 tree_.leaf_block_bytes());
+      }
+      const size_t behind_ids = turn - (kIdsAhead - kIndicesAhead);
+      if (behind_ids < count) {
+        for_each_id(leaves[behind_ids], [&](uint32_t id) { corners.prefetch_indices(id); });
+      }
+      const size_t behind_indices = turn - (kIdsAhead - kVerticesAhead);
+      if (behind_indices < count) {
+        for_each_id(leaves[behind_indices], [&](uint32_t id) { corners.prefetch_vertices(id); });
+      }
+      const size_t now = turn - kIdsAhead;
+      if (now < count) boxes[now] = refit_leaf(leaves[now], corners, totals);
+    }
+  }
+
+  template <typename Visit>
+  void for_each_id(ChildReference reference, Visit&& visit) const {
+    const uint32_t* const ids = tree_.leaf_ids(tree_.number_of(reference));
+    for (uint32_t mask = reference.mask(); mask != 0; mask &= mask - 1) {
+      visit(ids[std::countr_zero(mask)]);
+    }
+  }
+
+  /// The boxes of the leaves below a reference are the next ones.
+  Bounds4 refit(ChildReference reference, const Bounds4*& next_leaf, Totals& totals) const {
+    if (reference.is_leaf()) return *next_leaf++;
     WideNode<N>& node = node_of(reference);
     Bounds4 box = Bounds4::empty();
     for (uint32_t mask = reference.mask(); mask != 0; mask &= mask - 1) {
       const int slot = std::countr_zero(mask);
-      const Bounds4 below = refit(node.child[slot], corners, totals);
+      const Bounds4 below = refit(node.child[slot], next_leaf, totals);
       set_box(node, slot, below);
       box.extend(below);
     }
@@ -148,7 +236,7 @@ class WideRefit {
   }
 
   /// Other owners' lanes of the block are not touched.
-  Bounds4 refit_leaf(ChildReference reference, CornerReader& corners, Totals& totals) {
+  Bounds4 refit_leaf(ChildReference reference, CornerReader& corners, Totals& totals) const {
     const uint64_t number = tree_.number_of(reference);
     const uint32_t* const ids = tree_.leaf_ids(number);
     Bounds4 box = Bounds4::empty();
@@ -164,7 +252,7 @@ class WideRefit {
         ++totals.vanished_lanes;
       }
       if (tree_.leaf_layout == LeafLayout::kTriangles) {
-        store(corner, tree_.leaves<N>()[number], lane);
+        store(corner, tree_.template leaves<N>()[number], lane);
       }
     }
     totals.areas.leaf_area += static_cast<double>(box.bounds().half_area());
@@ -198,6 +286,7 @@ class WideRefit {
 
   WideTree& tree_;
   const TriangleSource& source_;
+  Memory& memory_;
   WideNode<N>* nodes_;
   Float4 centre_{};
   GrowingArray<Entry> entries_;
