@@ -10,6 +10,7 @@
 #include "device.h"
 #include "export.h"
 #include "geometry.h"
+#include "instances.h"
 #include "io.h"
 #include "light.h"
 #include "scene.h"

@@ -55,8 +55,20 @@ enum {
   KIWAMI_PARAMETER_LBVH_DELTA = 19,  /* neighbours are parted 0: by codes; 1: by surface area */
   KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20, /* neighbours that a leaf begins with at most, 1 to 16 */
   KIWAMI_PARAMETER_LAYOUT = 21,          /* what leaves hold of triangles: KIWAMI_LAYOUT_* */
-  KIWAMI_PARAMETER_QUALITY = 30 /* KIWAMI_QUALITY_*: sets builder, optimisers and contraction at
-                                 * once; what is set after it replaces its part */
+  KIWAMI_PARAMETER_QUALITY = 30, /* KIWAMI_QUALITY_*: sets builder, optimisers and contraction at
+                                  * once; what is set after it replaces its part */
+  KIWAMI_PARAMETER_REBRAID = 40, /* whether the tree over instances holds parts of them:
+                                  * KIWAMI_REBRAID_* */
+  KIWAMI_PARAMETER_REBRAID_BUDGET = 41 /* re-braiding: places in leaves beyond one an instance, at
+                                        * most this part of the instances, 0 to 64 */
+};
+
+/* Re-braiding: where instances overlap, their scenes' trees are opened, so that the tree over the
+ * instances keeps apart what is below. It decides how quickly rays are traced, never an answer. */
+enum {
+  KIWAMI_REBRAID_OFF = 0,  /* the default */
+  KIWAMI_REBRAID_FULL = 1, /* as deep as the budget allows */
+  KIWAMI_REBRAID_ROOTS = 2 /* the roots of the trees alone */
 };
 
 /* What the leaves of a committed scene hold of its triangle meshes, by KIWAMI_PARAMETER_LAYOUT. The
@@ -118,7 +130,8 @@ enum {
 
 enum { KIWAMI_MAX_OPTIMIZERS = 8 };
 
-/* What a committed scene is made of. Counts are of the acceleration structure. */
+/* What a committed scene is made of. Counts are of the acceleration structure of the triangles that
+ * are not in instances, unless they say otherwise; what instances show belongs to other scenes. */
 typedef struct kiwami_scene_info {
   uint32_t struct_size;      /* set by the caller to sizeof(kiwami_scene_info) */
   uint32_t bvh_width;        /* children a node */
@@ -137,11 +150,15 @@ typedef struct kiwami_scene_info {
   double leaf_fill;          /* used leaf lanes / all leaf lanes, 0 to 1 */
   double sah_cost;           /* surface area heuristic of the wide tree, relative to the root */
   double build_seconds;      /* wall-clock time of the last commit */
-  float bounds_min[3];       /* of the triangles that can be hit; +inf when there are none */
-  float bounds_max[3];       /* -inf when there are none */
-  uint64_t reference_count;  /* places of triangles in leaves: triangle_count, or more where a
-                              * builder divides space or triangles have vanished since the build */
-  uint64_t refit_count;      /* commits since the last build that kept its tree */
+  float bounds_min[3]; /* of all that can be hit, also in instances; +inf when there are none */
+  float bounds_max[3]; /* -inf when there are none */
+  uint64_t reference_count;     /* places of triangles in leaves: triangle_count, or more where a
+                                 * builder divides space or triangles have vanished since the build */
+  uint64_t refit_count;         /* commits since the last build that kept its tree */
+  uint64_t instance_count;      /* instances of all geometries */
+  uint64_t instance_tree_bytes; /* of the tree over the instances, in total_bytes as well */
+  uint32_t instance_depth;      /* instances on the longest path to a triangle; 0: none */
+  uint32_t reserved;            /* 0 */
 } kiwami_scene_info;
 
 /* Makes an empty scene, which must be committed before it is traced.

@@ -14,14 +14,11 @@
 #ifndef KIWAMI_TRACE_H
 #define KIWAMI_TRACE_H
 
-#include "scene.h"
+#include "instances.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* The most instances, each in the scene of the one before, that lead to a triangle. */
-#define KIWAMI_MAX_INSTANCE_DEPTH 8
 
 enum {
   /* Ignore triangles seen from behind. A triangle is seen from its front when its vertices run

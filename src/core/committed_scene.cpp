@@ -217,6 +217,10 @@ void CommittedScene::show_parts() {
 }
 
 void CommittedScene::describe() {
+  const SceneInstances& instances = parts_.instances();
+  info_.instance_count = instances.count();
+  info_.instance_depth = instances.depth();
+  info_.instance_tree_bytes = instances.tree().node_bytes() + instances.tree().leaf_bytes();
   info_.struct_size = sizeof(info_);
   info_.bvh_width = tree_.width;
   info_.leaf_width = tree_.leaf_width;
@@ -233,6 +237,12 @@ void CommittedScene::describe() {
   info_.leaf_fill = ratio(tree_.used_lanes, tree_.leaf_block_count * tree_.leaf_width);
   info_.sah_cost = tree_.sah_cost;
   info_.reference_count = tree_.used_lanes;
+}
+
+HitError CommittedScene::hit_error() const {
+  HitError error = HitError::of_triangles(bounds());
+  error.extend(parts_.instances().error());
+  return error;
 }
 
 void CommittedScene::validate() const {

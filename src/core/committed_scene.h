@@ -64,6 +64,21 @@ class CommittedScene : public Object<CommittedScene> {
   bool validates_arguments() const { return device_->validates_arguments(); }
   const kiwami_scene_info& info() const { return info_; }
   const WideTree& tree() const { return tree_; }
+  uint32_t width() const { return tree_.width; }
+  /// Of all that can be hit; empty where there is nothing.
+  Bounds bounds() const {
+    const float* lower = info_.bounds_min;
+    const float* upper = info_.bounds_max;
+    return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}};
+  }
+  /// Shapes and user primitives have less than triangles: their distance alone is rounded.
+  HitError hit_error() const;
+  /// About how much a ray may meet.
+  uint64_t primitive_count() const {
+    return triangle_count_ + parts_.primitive_count() + parts_.instances().count();
+  }
+  /// The instances on the longest path to a hit.
+  uint32_t instance_depth() const { return parts_.instances().depth(); }
   /// Triangles of all meshes, skipped ones included.
   size_t numbered_count() const { return numbered_count_; }
   TriangleSource source() const {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 
 #include "core/error.h"
+#include "core/instances.h"
 #include "parallel/progress.h"
 
 namespace kiwami {
@@ -41,7 +43,40 @@ Scene::~Scene() {
   }
 }
 
+/// A cycle is closed by an attachment: what a geometry shows never changes, so until then the
+/// scenes below it are a graph without any. They are looked at level by level, each once a level.
+void Scene::check_no_cycle(const Geometry& geometry) const {
+  if (geometry.kind() != GeometryKind::kInstances) return;
+  const auto add_scenes = [](const Geometry& shown, GrowingArray<const Scene*>& scenes) {
+    if (shown.kind() != GeometryKind::kInstances) return;
+    const auto& instances = static_cast<const Instances&>(shown);
+    for (uint32_t i = 0; i < instances.scene_count(); ++i) scenes.push_back(&instances.scene(i));
+  };
+  GrowingArray<const Scene*> next(device_->memory());
+  add_scenes(geometry, next);
+  while (!next.empty()) {
+    const Array<const Scene*> level = next.take();
+    Array<const Scene*> sorted(device_->memory(), level.size());
+    std::copy(level.begin(), level.end(), sorted.begin());
+    std::sort(sorted.begin(), sorted.end(), std::less<const Scene*>());
+    const Scene* previous = nullptr;
+    for (const Scene* scene : sorted) {
+      if (scene == this) {
+        throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                    "geometry shows the scene that it is attached to, expected no cycle of "
+                    "instances");
+      }
+      if (scene == previous) continue;
+      previous = scene;
+      for (size_t id = 0; id < scene->slots_.size(); ++id) {
+        if (scene->slots_[id].geometry) add_scenes(*scene->slots_[id].geometry, next);
+      }
+    }
+  }
+}
+
 uint32_t Scene::attach(Geometry& geometry) {
+  check_no_cycle(geometry);
   while (lowest_free_ < slots_.size() && slots_[lowest_free_].geometry) ++lowest_free_;
   if (lowest_free_ == slots_.size()) slots_.push_back({nullptr, true});
   slots_[lowest_free_] = {&geometry, true};

@@ -31,7 +31,8 @@ class Scene : public Object<Scene> {
     progress_user_ = user;
   }
 
-  /// Returns the lowest free number. Throws Error(OUT_OF_MEMORY).
+  /// Returns the lowest free number. Throws Error(OUT_OF_MEMORY), or Error(INVALID_ARGUMENT) where
+  /// the scene would be a part of itself.
   uint32_t attach(Geometry& geometry);
   /// Throws Error(INVALID_ARGUMENT) for a number that no geometry has.
   void detach(uint32_t geometry_id);
@@ -62,6 +63,7 @@ class Scene : public Object<Scene> {
   };
 
   Slot& slot(uint32_t geometry_id);
+  void check_no_cycle(const Geometry& geometry) const;
   Array<AttachedGeometry> attached_geometries() const;
   Reference<CommittedScene> take_refittable(const Parallel& parallel);
   /// Calls run(parallel), whose tasks are told to who wants to know.

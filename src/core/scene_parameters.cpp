@@ -39,6 +39,8 @@ constexpr NumberedBounds kBounds[] = {
     {KIWAMI_PARAMETER_LBVH_CHUNK_SIZE, {1, 16, 1, true}},
     {KIWAMI_PARAMETER_LAYOUT, {0, 1, KIWAMI_LAYOUT_FAST, true}},
     {KIWAMI_PARAMETER_QUALITY, {0, 2, KIWAMI_QUALITY_BALANCED, true}},
+    {KIWAMI_PARAMETER_REBRAID, {0, 2, KIWAMI_REBRAID_OFF, true}},
+    {KIWAMI_PARAMETER_REBRAID_BUDGET, {0.0, 64.0, 2.0, false}},
 };
 
 constexpr uint32_t kBalancedOptimizers[] = {KIWAMI_OPTIMIZER_REORDER_SATO};

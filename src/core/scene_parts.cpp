@@ -4,6 +4,8 @@
 namespace kiwami {
 
 void SceneParts::build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan) {
+  instances_.build(geometries, count, plan);
+  if (instances_.can_be_hit()) views_[count_++] = instances_.part();
   for (ShapePart& part : shapes_) {
     part.build(geometries, count, plan);
     add(part.tree(), part.view());
@@ -18,6 +20,7 @@ void SceneParts::add(const PartTree& tree, const ScenePart& view) {
 
 Bounds SceneParts::bounds() const {
   Bounds bounds = user_.tree().bounds;
+  bounds.extend(instances_.bounds());
   for (const ShapePart& part : shapes_) bounds.extend(part.tree().bounds);
   return bounds;
 }
@@ -35,6 +38,7 @@ uint64_t SceneParts::skipped_count() const {
 }
 
 void SceneParts::validate(Memory& memory, const Parallel& parallel) const {
+  instances_.validate(memory, parallel);
   for (const ShapePart& part : shapes_) part.validate(memory, parallel);
 }
 

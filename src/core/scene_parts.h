@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/scene_instances.h"
 #include "core/shape_part.h"
 #include "core/user_geometry.h"
 
@@ -20,6 +21,8 @@ class SceneParts {
   const ScenePart* views() const { return views_; }
   uint32_t count() const { return count_; }
 
+  const SceneInstances& instances() const { return instances_; }
+
   /// The box of them all.
   Bounds bounds() const;
   /// Primitives that can be hit, and that were skipped.
@@ -32,10 +35,11 @@ class SceneParts {
  private:
   void add(const PartTree& tree, const ScenePart& view);
 
+  SceneInstances instances_;
   ShapePart shapes_[3] = {ShapePart(ShapeKind::kSphere), ShapePart(ShapeKind::kDisc),
                           ShapePart(ShapeKind::kCurve)};
   UserPart user_;
-  ScenePart views_[4];
+  ScenePart views_[5];
   uint32_t count_ = 0;
 };
 

@@ -67,50 +67,59 @@ struct GeneralTraversal {
 
   /// Visits what the query has to see of a scene, by the ray as it is there, which is_traceable.
   /// Returns true if the query ended.
+  bool visit_scene(const SceneView& scene, const UnalignedRay& ray) {
+    return visit_from(scene, ray, {0, InstanceStart::kAllTrees, {}});
+  }
+
+  /// The same of a part of the scene.
   // Not inlined: it calls itself.
-  __attribute__((noinline)) bool visit_scene(const SceneView& scene, const UnalignedRay& ray) {
+  __attribute__((noinline)) bool visit_from(const SceneView& scene, const UnalignedRay& ray,
+                                            const InstanceStart& start) {
     ReadyRay ready;
-    if (scene.tree.root.mask() != 0) {
-      set_up(ray, scene.tree, ready);
-      query.set_level(scene, ready, query.reach());
-      if (traverse<N>(scene.tree, {scene.tree.root, ready.nearest}, ready, query, probe)) {
-        return true;
-      }
+    if (start.tree != InstanceStart::kAllTrees) {
+      return start.tree == 0
+                 ? visit_triangles(scene, start.subtree, ray, ready)
+                 : visit_part(scene, scene.parts[start.tree - 1], start.subtree, ray, ready);
+    }
+    if (scene.tree.root.mask() != 0 && visit_triangles(scene, scene.tree.root, ray, ready)) {
+      return true;
     }
     for (uint32_t i = 0; i < scene.part_count; ++i) {
       const ScenePart& part = scene.parts[i];
-      set_up_for_part(ray, part, ready);
-      query.set_level(scene, ready, query.reach());
-      if (visit_part(scene, part, ray, ready)) return true;
+      if (visit_part(scene, part, part.tree.root, ray, ready)) return true;
     }
     return false;
   }
 
-  bool visit_part(const SceneView& scene, const ScenePart& part, const UnalignedRay& ray,
-                  const ReadyRay& ready) {
+  bool visit_triangles(const SceneView& scene, ChildReference subtree, const UnalignedRay& ray,
+                       ReadyRay& ready) {
+    set_up(ray, scene.tree, ready);
+    query.set_level(scene, ready, query.reach());
+    return traverse<N>(scene.tree, {subtree, ready.nearest}, ready, query, probe);
+  }
+
+  bool visit_part(const SceneView& scene, const ScenePart& part, ChildReference subtree,
+                  const UnalignedRay& ray, ReadyRay& ready) {
+    set_up_for_part(ray, part, ready);
+    query.set_level(scene, ready, query.reach());
     switch (part.kind) {
       case PartKind::kInstances: {
         InstanceVisitor visitor{*this, scene, *static_cast<const InstancePart*>(part.data),
                                 ray,   ready, query.best_bound};
-        return visit_tree(part.tree, ready, visitor);
+        return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
       case PartKind::kShapes: {
         ShapeVisitor visitor{query, *static_cast<const ShapeSource*>(part.data), ready,
                              widen_ray(ray), query.best_bound};
-        return visit_tree(part.tree, ready, visitor);
+        return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
       case PartKind::kUser: {
         UserVisitor visitor{query, *static_cast<const UserSource*>(part.data), ready, ray,
                             query.best_bound};
-        return visit_tree(part.tree, ready, visitor);
+        return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
     }
     return false;
-  }
-
-  template <typename Visitor>
-  bool visit_tree(const TreeView& tree, const ReadyRay& ready, Visitor& visitor) {
-    return traverse<N>(tree, {tree.root, ready.nearest}, ready, visitor, probe);
   }
 
   /// Enters the instances in the leaves of a part.
@@ -127,12 +136,16 @@ struct GeneralTraversal {
     bool visit_block(const TreeView& tree, ChildReference reference, Probe&) {
       const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, reference);
       for (uint32_t lanes = reference.mask(); lanes; lanes &= lanes - 1) {
-        if (visit_instance(block.id[__builtin_ctz(lanes)])) return true;
+        const uint32_t id = block.id[__builtin_ctz(lanes)];
+        const InstanceStart start =
+            part.starts ? part.starts[id] : InstanceStart{id, InstanceStart::kAllTrees, {}};
+        if (visit_instance(start)) return true;
       }
       return false;
     }
 
-    bool visit_instance(uint32_t number) {
+    bool visit_instance(const InstanceStart& start) {
+      const uint32_t number = start.instance;
       const InstanceRecord& instance = part.instances[number];
       const Prototype& prototype = part.prototypes[instance.prototype];
       const uint32_t mask = part.masks ? part.masks[number] & prototype.mask : prototype.mask;
@@ -142,9 +155,10 @@ struct GeneralTraversal {
       Query& query = traversal.query;
       query.path.number[query.path.depth++] = number;
       const auto level = traversal.probe.enter(ready);
-      if (traversal.visit_scene(*prototype.scene, local)) return true;
+      const bool is_done = traversal.visit_from(*prototype.scene, local, start);
       traversal.probe.leave(level);
       --query.path.depth;
+      if (is_done) return true;
       query.set_level(scene, ready, query.reach());
       best_bound = query.best_bound;
       return false;

@@ -273,6 +273,10 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_scene_info, bounds_max, 124);
   FIELD(kiwami_scene_info, reference_count, 136);
   FIELD(kiwami_scene_info, refit_count, 144);
+  FIELD(kiwami_scene_info, instance_count, 152);
+  FIELD(kiwami_scene_info, instance_tree_bytes, 160);
+  FIELD(kiwami_scene_info, instance_depth, 168);
+  FIELD(kiwami_scene_info, reserved, 172);
 
   SIZE(kiwami_query, 24);
   FIELD(kiwami_query, struct_size, 0);

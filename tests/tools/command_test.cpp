@@ -121,6 +121,46 @@ TEST(Command, VerifiesSmallScenes) {
   }
 }
 
+TEST(Command, VerifiesInstances) {
+  for (const char* scene : {"room:3000", "forest:3"}) {
+    const CommandResult result =
+        run_command({"verify", scene, "--instanced", "--rays", "200", "--seed", "4"});
+    EXPECT_EQ(result.exit_code, 0) << scene << "\n" << result.output << result.errors;
+    EXPECT_NE(result.output.find("\nverified\n"), std::string::npos) << result.output;
+  }
+}
+
+TEST(Command, RendersInstancesAsTheyAreFlattened) {
+  const TemporaryFolder folder;
+  const auto picture_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"render", "room:3000", "-o",    folder / "picture.ppm",
+                                          "--size", "40x30",     "--spp", "1",
+                                          "--mode", "normals"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = run_command(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return read_bytes(folder / "picture.ppm");
+  };
+  const std::string flat = picture_of({}), instanced = picture_of({"--instanced"});
+  ASSERT_EQ(flat.size(), instanced.size());
+  size_t different = 0;
+  for (size_t i = 0; i < flat.size(); ++i) {
+    different += std::abs(static_cast<int>(static_cast<unsigned char>(flat[i])) -
+                          static_cast<int>(static_cast<unsigned char>(instanced[i]))) > 2;
+  }
+  // At silhouettes either may be seen.
+  EXPECT_LT(different, flat.size() / 100);
+}
+
+TEST(Command, BenchMeasuresInstances) {
+  const CommandResult result =
+      run_command({"bench", "room:3000", "--instanced", "--ray-count", "400", "--rounds", "1",
+                   "--rays", "bounce,ao", "--threads", "1", "--param", "rebraid=1"});
+  EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
+  EXPECT_NE(result.output.find("room:3000 instanced"), std::string::npos) << result.output;
+  EXPECT_EQ(run_command({"bench", "room:3000", "--instanced", "--vs", "binary"}).exit_code, 2);
+}
+
 TEST(Command, DemoPrintsEveryIsaAndWritesBothFiles) {
   const TemporaryFolder folder;
   const CommandResult result =

@@ -122,6 +122,23 @@ TEST(Procedural, RoomHasHundredsOfCopiesOfSeveralMeshesWithinItsWalls) {
   }
 }
 
+TEST(Procedural, ForestHasOverlappingTreesOnAFloor) {
+  const std::optional<SceneFile> scene = make_procedural_scene("forest:50");
+  ASSERT_TRUE(scene.has_value());
+  EXPECT_EQ(scene->instances.size(), 51u);
+  EXPECT_GT(scene->triangle_count(), 50u * 3000u);
+  EXPECT_TRUE(scene->view.has_value());
+  // The trunks stand closer than the crowns are wide.
+  size_t overlapping = 0;
+  for (const Instance& a : scene->instances) {
+    for (const Instance& b : scene->instances) {
+      const float x = a.transform[3] - b.transform[3], z = a.transform[11] - b.transform[11];
+      overlapping += &a != &b && std::hypot(x, z) < 2.5f;
+    }
+  }
+  EXPECT_GT(overlapping, 3 * scene->instances.size());
+}
+
 TEST(Procedural, LargeTerrainHasFourMillionTriangles) {
   const std::optional<SceneFile> scene = make_procedural_scene("terrain");
   ASSERT_TRUE(scene.has_value());
@@ -137,9 +154,11 @@ TEST(Procedural, OtherNamesAreNoScenes) {
 
 TEST(Procedural, NumbersOutOfBoundsAreRefused) {
   for (const char* name :
-       {"sphere:10", "sphere:-1", "sphere:1:2", "sphere:1 ", "sphere:", "terrain:0", "terrain:4097",
-        "soup:1", "soup:0:1", "soup:1:", "soup:1:2:3", "soup:99999999999999999999:1", "hairball:0",
-        "hairball:", "hairball:5:5", "room:0", "room:-1", "room:100000001"}) {
+       {"sphere:10",  "sphere:-1",      "sphere:1:2",   "sphere:1 ",
+        "sphere:",    "terrain:0",      "terrain:4097", "soup:1",
+        "soup:0:1",   "soup:1:",        "soup:1:2:3",   "soup:99999999999999999999:1",
+        "hairball:0", "hairball:",      "hairball:5:5", "room:0",
+        "room:-1",    "room:100000001", "forest:0",     "forest:1000001"}) {
     EXPECT_THROW(make_procedural_scene(name), SceneError) << name;
   }
 }

@@ -56,7 +56,12 @@ std::vector<PeerSide> choose_peer_sides(const PeerScene& peer, const BenchRays& 
 class SceneBench {
  public:
   SceneBench(const std::string& name, const BenchSettings& settings, const BenchListener& listener)
-      : name_(name), settings_(settings), listener_(listener), file_(load_known_scene(name)) {}
+      : name_(name),
+        settings_(settings),
+        listener_(listener),
+        file_(load_known_scene(name, settings.instanced)) {
+    if (!file_.instances.empty()) name_ += " instanced";
+  }
 
   void run() {
     for (const uint32_t isa : settings_.isas) {
@@ -106,6 +111,8 @@ void SceneBench::run_device(uint32_t isa, uint32_t threads) {
 }
 
 double SceneBench::overlap_of(const BuiltScene& scene) {
+  // The trees under instances are others.
+  if (!file_.instances.empty()) return 0.0;
   const auto [found, is_new] = overlaps_.try_emplace(scene.info().bvh_width, 0.0);
   if (is_new) found->second = scene.measures().epo;
   return found->second;

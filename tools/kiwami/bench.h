@@ -31,6 +31,7 @@ struct BenchSettings {
   std::vector<BenchApi> apis;
   std::vector<uint32_t> isas;  ///< KIWAMI_ISA_*
   BuildOptions build;
+  bool instanced = false;  ///< instances stay instances, here and there
   ViewOptions view;
   BenchPeer peer = BenchPeer::kEmbree;
   bool robust = false;  ///< Embree's robust scene flag

@@ -39,6 +39,7 @@ struct BenchOptions {
   std::string apis = "single,batch";
   std::string isas = "auto";
   uint32_t bvh_width = 0;
+  bool instanced = false;
   PipelineOptions pipeline;
   std::string pipelines;
   std::string structures;
@@ -240,6 +241,11 @@ int run_query_table(const BenchOptions& options, const BenchSettings& settings,
 int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   const std::vector<std::string> scenes = choose_scenes(options);
+  if (options.instanced &&
+      (options.peer == "binary" || !options.pipelines.empty() || !options.structures.empty())) {
+    throw UsageError(
+        "--instanced goes with --vs embree or none, and with neither --pipelines nor --structures");
+  }
   if (!options.json.empty()) check_writable("--json", options.json);
   if (!options.pipelines.empty()) return run_pipeline_table(options, settings, scenes);
   if (options.change) return run_change_table(options, settings, scenes);
@@ -296,6 +302,7 @@ void add_scene_options(CLI::App& command, BenchOptions& options) {
       .add_option("--scenes-folder,--scenes", options.scenes_folder,
                   "Where the files of the list are")
       ->capture_default_str();
+  add_instanced_option(command, options.instanced);
   add_view_options(command, options.view);
 }
 

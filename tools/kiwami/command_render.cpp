@@ -24,6 +24,7 @@ struct RenderOptions {
   std::string size = "1024x768";
   uint32_t samples_per_pixel = 16;
   uint32_t bounces = 4;
+  bool instanced = false;
   ViewOptions view;
   TraceOptions trace;
   PipelineOptions pipeline;
@@ -45,8 +46,10 @@ void check_options(const RenderOptions& options) {
 }
 
 void print_build(const SceneFile& file, const Device& device, const kiwami_scene_info& info) {
-  std::printf("scene   %s triangles in %s meshes\n", grouped(file.triangle_count()).c_str(),
-              grouped(file.meshes.size()).c_str());
+  const std::string instances =
+      file.instances.empty() ? "" : ", " + grouped(file.instances.size()) + " instances";
+  std::printf("scene   %s triangles in %s meshes%s\n", grouped(file.triangle_count()).c_str(),
+              grouped(file.meshes.size()).c_str(), instances.c_str());
   if (info.skipped_count > 0) {
     std::printf("note    %s triangles are skipped: a vertex is NaN, infinite or beyond 2^60\n",
                 grouped(info.skipped_count).c_str());
@@ -74,7 +77,8 @@ void run_render(const RenderOptions& options) {
   check_options(options);
   const Size size = parse_size("--size", options.size);
   const Device device = options.trace.make_device();
-  const SceneFile file = flatten(load_scene(options.scene));
+  const SceneFile loaded = load_scene(options.scene);
+  const SceneFile file = options.instanced ? loaded : flatten(loaded);
   const std::unique_ptr<BuiltScene> built = make_scene(options, device, file);
   const BuiltScene& scene = *built;
   print_build(file, device, scene.info());
@@ -129,6 +133,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--bounces", options->bounces, "Bounces of a path")
       ->check(whole_number(1, 8))
       ->capture_default_str();
+  add_instanced_option(*command, options->instanced);
   add_view_options(*command, options->view);
   add_trace_options(*command, options->trace);
   add_pipeline_options(*command, options->pipeline);

@@ -13,17 +13,20 @@ struct VerifyOptions {
   std::string scene;
   uint64_t rays = 20000;
   uint64_t seed = 1;
+  bool instanced = false;
   PipelineOptions pipeline;
 };
 
 constexpr int kDifferenceFound = 1;
 
 int run_verify(const VerifyOptions& options) {
-  const SceneFile file = flatten(load_scene(options.scene));
+  const SceneFile file = load_scene(options.scene);
+  const SceneFile world = flatten(file);
   std::printf("%s: %s triangles, seed %llu\n", options.scene.c_str(),
-              grouped(file.triangle_count()).c_str(),
+              grouped(world.triangle_count()).c_str(),
               static_cast<unsigned long long>(options.seed));
-  Verifier verifier(file, options.pipeline.build_options(0), options.rays, options.seed);
+  Verifier verifier(world, options.instanced ? file : world, options.pipeline.build_options(0),
+                    options.rays, options.seed);
   const bool equal = verifier.run();
   std::printf("\n%s\n", equal ? "verified" : "NOT VERIFIED");
   return equal ? 0 : kDifferenceFound;
@@ -42,6 +45,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   command->add_option("--seed", options->seed, "Seed of the random rays")
       ->check(whole_number(0, UINT64_MAX))
       ->capture_default_str();
+  add_instanced_option(*command, options->instanced);
   add_pipeline_options(*command, options->pipeline);
   command->footer("Exits with 1 at the first difference, after saying which ray it is.");
   command->callback([options, &exit_code] { exit_code = run_verify(*options); });

@@ -72,6 +72,12 @@ void add_trace_options(CLI::App& command, TraceOptions& options) {
       ->capture_default_str();
 }
 
+void add_instanced_option(CLI::App& command, bool& instanced) {
+  command.add_flag("--instanced", instanced,
+                   "A scene with instances stays one, with a tree for each mesh and one over the "
+                   "instances; by default it is flattened to triangles");
+}
+
 BuildOptions PipelineOptions::build_options(uint32_t bvh_width) const {
   const auto number = std::find(std::begin(kQualityNames), std::end(kQualityNames), quality);
   BuildOptions options =

@@ -49,6 +49,9 @@ struct TraceOptions {
 /// Adds --isa, --bvh-width and --threads.
 void add_trace_options(CLI::App& command, TraceOptions& options);
 
+/// Adds --instanced: whether the instances of a scene stay instances.
+void add_instanced_option(CLI::App& command, bool& instanced);
+
 /// Accept a whole number, or a finite number, within bounds; a sentence otherwise.
 CLI::Validator whole_number(uint64_t lowest, uint64_t highest);
 CLI::Validator finite_number(double lowest, double highest);

@@ -55,7 +55,7 @@ void OwnRun::trace() {
     if (rays_.any_hit) {
       scene_.any_hits(rays, occluded_);
     } else {
-      scene_.closest_hits(rays, hits_);
+      scene_.own_closest_hits(rays, hits_);
     }
     return;
   }

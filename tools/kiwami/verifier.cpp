@@ -77,13 +77,14 @@ constexpr const char* kReferenceName = "scalar, 4 wide, merged, 1 thread";
 
 }  // namespace
 
-Verifier::Verifier(const SceneFile& scene, const BuildOptions& build, size_t rays_per_set,
-                   uint64_t seed)
-    : scene_(scene),
+Verifier::Verifier(const SceneFile& world, const SceneFile& built, const BuildOptions& build,
+                   size_t rays_per_set, uint64_t seed)
+    : world_(world),
+      built_(built),
       build_(build),
       device_(KIWAMI_ISA_SCALAR, 1),
-      reference_(device_, scene, {4, true}),
-      sets_(make_ray_sets(scene, reference_, rays_per_set, seed)),
+      reference_(device_, built, {4, true}),
+      sets_(make_ray_sets(world, reference_, rays_per_set, seed)),
       expected_(trace_answers(reference_, sets_)) {}
 
 bool Verifier::run() {
@@ -115,7 +116,7 @@ bool Verifier::run_contender(const Contender& contender) {
   BuildOptions build = build_;
   build.bvh_width = contender.bvh_width;
   build.merge_leaves = contender.merge_leaves;
-  const BuiltScene scene(device, scene_, build);
+  const BuiltScene scene(device, built_, build);
   const bool native = (device.info().native_widths & (1u << contender.bvh_width)) != 0;
   std::printf("%-8s %6u %9s %8s %10u %12.1f  ", kiwami_isa_name(contender.isa), contender.bvh_width,
               native ? "native" : "scalar", contender.merge_leaves ? "yes" : "no",
@@ -138,7 +139,7 @@ bool Verifier::compare(const Answers& answers, const std::string& name) const {
 }
 
 bool Verifier::compare_with_embree() const {
-  const std::unique_ptr<EmbreeTracer> embree = EmbreeTracer::create(scene_, true);
+  const std::unique_ptr<EmbreeTracer> embree = EmbreeTracer::create(world_, true);
   if (!embree) {
     std::printf("\nnot compared with Embree: these tools were built without it\n");
     return true;
@@ -152,7 +153,7 @@ bool Verifier::compare_with_embree() const {
       // Embree has no culling by ray.
       if (ray.flags != 0) continue;
       const kiwami_hit& own = expected_.hits[s][i];
-      const Agreement agreement = compare_hits(scene_, ray, own, hits[i]);
+      const Agreement agreement = compare_hits(world_, ray, own, hits[i]);
       ++counts[static_cast<size_t>(agreement)];
       if (agreement == Agreement::kWrong) {
         print_difference("closest hit (Embree and double precision)", sets_[s], i);

@@ -23,10 +23,12 @@ struct Contender {
 /// thread, and those with Embree.
 class Verifier {
  public:
-  /// The scene must have no instances, and outlive the verifier.
+  /// What is built is the world, or a file with instances that comes to it. Both must outlive the
+  /// verifier. Instances are compared by Embree and double precision with the flattened triangles.
   /// The contenders are built as `build` says, but for width and merging; the reference is built
   /// by the defaults.
-  Verifier(const SceneFile& scene, const BuildOptions& build, size_t rays_per_set, uint64_t seed);
+  Verifier(const SceneFile& world, const SceneFile& built, const BuildOptions& build,
+           size_t rays_per_set, uint64_t seed);
 
   /// Prints a table and returns true; or prints the first difference and returns false.
   bool run();
@@ -36,7 +38,8 @@ class Verifier {
   bool compare(const Answers& answers, const std::string& name) const;
   bool compare_with_embree() const;
 
-  const SceneFile& scene_;
+  const SceneFile& world_;
+  const SceneFile& built_;
   BuildOptions build_;
   Device device_;
   BuiltScene reference_;

@@ -41,18 +41,36 @@ EmbreeScene::EmbreeScene(const SceneFile& file, const EmbreeSettings& settings) 
   if (device_ == nullptr) {
     throw std::runtime_error("Embree cannot make a device of '" + settings.config + "'");
   }
-  scene_ = rtcNewScene(device_);
-  rtcSetSceneBuildQuality(scene_, settings.quality);
-  const int flags = (settings.robust ? RTC_SCENE_FLAG_ROBUST : 0) |
-                    (settings.has_filters ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION : 0);
-  if (flags != 0) rtcSetSceneFlags(scene_, static_cast<RTCSceneFlags>(flags));
   try {
-    for (const Mesh& mesh : file.meshes) attach(mesh, settings.quality);
-    commit();
+    build(file, settings);
   } catch (...) {
     release();
     throw;
   }
+}
+
+void EmbreeScene::build(const SceneFile& file, const EmbreeSettings& settings) {
+  scene_ = make_scene(settings);
+  if (file.instances.empty()) {
+    for (const Mesh& mesh : file.meshes) attach(scene_, mesh, settings.quality);
+  } else {
+    for (const Mesh& mesh : file.meshes) {
+      shown_.push_back(make_scene(settings));
+      attach(shown_.back(), mesh, settings.quality);
+      commit(shown_.back());
+    }
+    for (const Instance& instance : file.instances) attach(instance);
+  }
+  commit(scene_);
+}
+
+RTCScene EmbreeScene::make_scene(const EmbreeSettings& settings) {
+  RTCScene scene = rtcNewScene(device_);
+  rtcSetSceneBuildQuality(scene, settings.quality);
+  const int flags = (settings.robust ? RTC_SCENE_FLAG_ROBUST : 0) |
+                    (settings.has_filters ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION : 0);
+  if (flags != 0) rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(flags));
+  return scene;
 }
 
 EmbreeScene::~EmbreeScene() { release(); }
@@ -61,7 +79,7 @@ uint64_t EmbreeScene::bytes() const {
   return static_cast<uint64_t>(std::max<int64_t>(0, bytes_.load()));
 }
 
-void EmbreeScene::attach(const Mesh& mesh, RTCBuildQuality quality) {
+void EmbreeScene::attach(RTCScene scene, const Mesh& mesh, RTCBuildQuality quality) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   // A scene of low quality takes the builder of each geometry from its own quality.
   rtcSetGeometryBuildQuality(geometry, quality);
@@ -70,15 +88,25 @@ void EmbreeScene::attach(const Mesh& mesh, RTCBuildQuality quality) {
   fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.indices.data(), 12,
               mesh.triangle_count());
   rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+void EmbreeScene::attach(const Instance& instance) {
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, shown_[instance.mesh]);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, instance.transform.data());
+  rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
 }
 
-void EmbreeScene::commit() {
+void EmbreeScene::commit(RTCScene scene) {
   rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
   const auto start = std::chrono::steady_clock::now();
-  rtcCommitScene(scene_);
-  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  rtcCommitScene(scene);
+  build_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  rtcSetDeviceMemoryMonitorFunction(device_, nullptr, nullptr);
   if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) {
     throw std::runtime_error("Embree cannot build the scene");
   }
@@ -86,6 +114,7 @@ void EmbreeScene::commit() {
 
 void EmbreeScene::release() {
   rtcReleaseScene(scene_);
+  for (RTCScene scene : shown_) rtcReleaseScene(scene);
   rtcReleaseDevice(device_);
 }
 

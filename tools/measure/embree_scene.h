@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scene/scene_file.h"
 
@@ -23,7 +24,8 @@ struct EmbreeSettings {
 /// The configuration of a device with the instructions of one of KIWAMI_ISA_* and so many threads.
 std::string embree_config(uint32_t isa, uint32_t threads);
 
-/// Owns an Embree device and a committed scene whose geometry i is mesh i of the file.
+/// Owns an Embree device and a committed scene whose geometry i is mesh i of the file; or, of a
+/// file with instances, its instance i over a scene of its mesh.
 class EmbreeScene {
  public:
   EmbreeScene(const SceneFile& file, const EmbreeSettings& settings);
@@ -37,12 +39,16 @@ class EmbreeScene {
   uint64_t bytes() const;
 
  private:
-  void attach(const Mesh& mesh, RTCBuildQuality quality);
-  void commit();
+  void build(const SceneFile& file, const EmbreeSettings& settings);
+  RTCScene make_scene(const EmbreeSettings& settings);
+  void attach(RTCScene scene, const Mesh& mesh, RTCBuildQuality quality);
+  void attach(const Instance& instance);
+  void commit(RTCScene scene);
   void release();
 
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
+  std::vector<RTCScene> shown_;  ///< the scenes of instances
   std::atomic<int64_t> bytes_{0};
   double build_seconds_ = 0.0;
 };

@@ -40,8 +40,8 @@ class Embree3Tracer final : public EmbreeTracer {
               KIWAMI_INVALID_ID,
               KIWAMI_INVALID_ID};
     }
-    return {query.ray.tfar, query.hit.u,      query.hit.v,      query.hit.Ng_x,   query.hit.Ng_y,
-            query.hit.Ng_z, query.hit.primID, query.hit.geomID, KIWAMI_INVALID_ID};
+    return {query.ray.tfar, query.hit.u,      query.hit.v,      query.hit.Ng_x,     query.hit.Ng_y,
+            query.hit.Ng_z, query.hit.primID, query.hit.geomID, query.hit.instID[0]};
   }
 
   EmbreeScene scene_;

@@ -43,7 +43,9 @@ constexpr struct {
                    {"lbvh_delta", KIWAMI_PARAMETER_LBVH_DELTA},
                    {"lbvh_chunk_size", KIWAMI_PARAMETER_LBVH_CHUNK_SIZE},
                    {"layout", KIWAMI_PARAMETER_LAYOUT},
-                   {"quality", KIWAMI_PARAMETER_QUALITY}};
+                   {"quality", KIWAMI_PARAMETER_QUALITY},
+                   {"rebraid", KIWAMI_PARAMETER_REBRAID},
+                   {"rebraid_budget", KIWAMI_PARAMETER_REBRAID_BUDGET}};
 
 std::string parameter_names() {
   std::string names;
@@ -83,6 +85,63 @@ kiwami_query calling_thread_query() {
   return query;
 }
 
+kiwami_triangle_mesh_desc desc_of(const Mesh& mesh) {
+  kiwami_triangle_mesh_desc desc;
+  check(kiwami_triangle_mesh_desc_init(&desc, sizeof desc), nullptr);
+  desc.flags = KIWAMI_MESH_SHARE_BUFFERS;
+  desc.vertices = mesh.vertices.data();
+  desc.vertex_count = mesh.vertex_count();
+  desc.indices = mesh.indices.data();
+  desc.triangle_count = mesh.triangle_count();
+  return desc;
+}
+
+kiwami_scene_info info_of(const kiwami_scene* scene) {
+  kiwami_scene_info info{};
+  info.struct_size = sizeof info;
+  check(kiwami_scene_get_info(scene, &info), nullptr);
+  return info;
+}
+
+kiwami_scene_info commit(kiwami_scene* scene) {
+  check(kiwami_scene_commit(scene), nullptr);
+  return info_of(scene);
+}
+
+/// Adds what a scene under instances costs; the fill rates are sums until divided.
+void add_costs(const kiwami_scene_info& shown, kiwami_scene_info& all) {
+  all.skipped_count += shown.skipped_count;
+  all.node_count += shown.node_count;
+  all.leaf_block_count += shown.leaf_block_count;
+  all.node_bytes += shown.node_bytes;
+  all.leaf_bytes += shown.leaf_bytes;
+  all.total_bytes += shown.total_bytes;
+  all.peak_build_bytes += shown.peak_build_bytes;
+  all.build_seconds += shown.build_seconds;
+  all.reference_count += shown.reference_count;
+  all.node_fill += shown.node_fill * static_cast<double>(shown.node_count);
+  all.leaf_fill += shown.leaf_fill * static_cast<double>(shown.leaf_block_count);
+}
+
+/// The hit as of the flattened file. Normals go by the cofactors: (M b) x (M c) = cof(M) (b x c).
+void move_to_world(const std::vector<Instance>& instances, kiwami_hit& hit) {
+  if (hit.instance_id == KIWAMI_INVALID_ID) return;
+  const auto& m = instances[hit.instance_id].transform;
+  const auto cofactor = [&](size_t i, size_t j) {
+    const size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    return m[i1 * 4 + j1] * m[i2 * 4 + j2] - m[i1 * 4 + j2] * m[i2 * 4 + j1];
+  };
+  const float x = hit.normal_x, y = hit.normal_y, z = hit.normal_z;
+  const auto row = [&](size_t i) {
+    return cofactor(i, 0) * x + cofactor(i, 1) * y + cofactor(i, 2) * z;
+  };
+  hit.normal_x = row(0);
+  hit.normal_y = row(1);
+  hit.normal_z = row(2);
+  hit.geometry_id = hit.instance_id;
+  hit.instance_id = KIWAMI_INVALID_ID;
+}
+
 /// Holds the reference to a scene's tree.
 class Tree {
  public:
@@ -111,11 +170,12 @@ Device::Device(uint32_t isa, uint32_t thread_count) {
 }
 
 BuiltScene::BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options) {
-  check(kiwami_scene_create(device.get(), &scene_), device.get());
   try {
-    set_parameters(device.get(), options);
-    for (const Mesh& mesh : file.meshes) attach(device.get(), mesh);
-    commit(kiwami_scene_commit);
+    if (file.instances.empty()) {
+      build(device.get(), file, options);
+    } else {
+      build_instances(device.get(), file, options);
+    }
   } catch (...) {
     release();
     throw;
@@ -129,7 +189,7 @@ BuiltScene::BuiltScene(const Device& device, const std::string& path, uint32_t l
   desc.flags = load_flags;
   check(kiwami_scene_load(device.get(), &desc, &scene_), device.get());
   try {
-    read_info();
+    info_ = info_of(scene_);
   } catch (...) {
     kiwami_scene_release(scene_);
     throw;
@@ -145,62 +205,99 @@ uint64_t BuiltScene::save(const std::string& path) const {
   return bytes;
 }
 
-void BuiltScene::set_parameters(kiwami_device* device, const BuildOptions& options) {
-  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_BVH_WIDTH, options.bvh_width), device);
-  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_MERGE_LEAVES,
-                                   options.merge_leaves ? 1.0 : 0.0),
-        device);
-  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_BUILDER, options.builder), device);
-  check(kiwami_scene_set_optimizers(scene_, options.optimizers.data(), options.optimizers.size()),
-        device);
-  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_CONTRACTION, options.contraction),
-        device);
-  check(kiwami_scene_set_parameter(scene_, KIWAMI_PARAMETER_LAYOUT, options.layout), device);
-  for (const Parameter& parameter : options.parameters) {
-    check(kiwami_scene_set_parameter(scene_, parameter.number, parameter.value), device);
-    if (parameter.number == KIWAMI_PARAMETER_NODE_COST) node_cost_ = parameter.value;
-    if (parameter.number == KIWAMI_PARAMETER_LEAF_COST) leaf_cost_ = parameter.value;
-  }
-}
-
-void BuiltScene::attach(kiwami_device* device, const Mesh& mesh) {
-  kiwami_triangle_mesh_desc desc;
-  check(kiwami_triangle_mesh_desc_init(&desc, sizeof desc), device);
-  desc.flags = KIWAMI_MESH_SHARE_BUFFERS;
-  desc.vertices = mesh.vertices.data();
-  desc.vertex_count = mesh.vertex_count();
-  desc.indices = mesh.indices.data();
-  desc.triangle_count = mesh.triangle_count();
-  kiwami_geometry* geometry = nullptr;
-  check(kiwami_triangle_mesh_create(device, &desc, &geometry), device);
-  geometries_.push_back(geometry);
-  check(kiwami_scene_attach(scene_, geometry, nullptr), device);
-}
-
 void BuiltScene::release() {
   for (kiwami_geometry* geometry : geometries_) kiwami_geometry_release(geometry);
   kiwami_scene_release(scene_);
+  for (kiwami_scene* scene : shown_) kiwami_scene_release(scene);
+}
+
+void BuiltScene::build(kiwami_device* device, const SceneFile& file, const BuildOptions& options) {
+  scene_ = make_scene(device, options);
+  for (const Mesh& mesh : file.meshes) attach(device, scene_, mesh);
+  info_ = commit(scene_);
+}
+
+void BuiltScene::attach(kiwami_device* device, kiwami_scene* scene, const Mesh& mesh) {
+  const kiwami_triangle_mesh_desc desc = desc_of(mesh);
+  kiwami_geometry* geometry = nullptr;
+  check(kiwami_triangle_mesh_create(device, &desc, &geometry), device);
+  geometries_.push_back(geometry);
+  check(kiwami_scene_attach(scene, geometry, nullptr), device);
 }
 
 void BuiltScene::refit() {
   for (kiwami_geometry* geometry : geometries_) {
     check(kiwami_triangle_mesh_update_vertices(geometry, nullptr, 0, 0), nullptr);
   }
-  commit(kiwami_scene_refit);
+  check(kiwami_scene_refit(scene_), nullptr);
+  info_ = info_of(scene_);
 }
 
-void BuiltScene::commit(kiwami_result (*commit_function)(kiwami_scene*)) {
-  check(commit_function(scene_), nullptr);
-  read_info();
+void BuiltScene::build_instances(kiwami_device* device, const SceneFile& file,
+                                 const BuildOptions& options) {
+  instances_ = file.instances;
+  kiwami_scene_info shown{};
+  for (const Mesh& mesh : file.meshes) {
+    shown_.push_back(make_scene(device, options));
+    attach(device, shown_.back(), mesh);
+    add_costs(commit(shown_.back()), shown);
+  }
+  scene_ = make_scene(device, options);
+  kiwami_instances_desc desc;
+  check(kiwami_instances_desc_init(&desc, sizeof desc), device);
+  desc.scenes = shown_.data();
+  desc.scene_count = shown_.size();
+  desc.scene_indices = &instances_[0].mesh;
+  desc.transforms = instances_[0].transform.data();
+  desc.scene_index_stride = desc.transform_stride = sizeof(Instance);
+  desc.count = instances_.size();
+  kiwami_geometry* geometry = nullptr;
+  check(kiwami_instances_create(device, &desc, &geometry), device);
+  geometries_.push_back(geometry);
+  check(kiwami_scene_attach(scene_, geometry, nullptr), device);
+  info_ = commit(scene_);
+  add_costs(shown, info_);
+  info_.triangle_count = file.triangle_count();
+  info_.node_fill = shown.node_fill / static_cast<double>(std::max<uint64_t>(shown.node_count, 1));
+  info_.leaf_fill =
+      shown.leaf_fill / static_cast<double>(std::max<uint64_t>(shown.leaf_block_count, 1));
 }
 
-void BuiltScene::read_info() {
-  info_.struct_size = sizeof info_;
-  check(kiwami_scene_get_info(scene_, &info_), nullptr);
+kiwami_scene* BuiltScene::make_scene(kiwami_device* device, const BuildOptions& options) {
+  kiwami_scene* scene = nullptr;
+  check(kiwami_scene_create(device, &scene), device);
+  try {
+    const auto set = [&](uint32_t parameter, double value) {
+      check(kiwami_scene_set_parameter(scene, parameter, value), device);
+    };
+    set(KIWAMI_PARAMETER_BVH_WIDTH, options.bvh_width);
+    set(KIWAMI_PARAMETER_MERGE_LEAVES, options.merge_leaves ? 1.0 : 0.0);
+    set(KIWAMI_PARAMETER_BUILDER, options.builder);
+    check(kiwami_scene_set_optimizers(scene, options.optimizers.data(), options.optimizers.size()),
+          device);
+    set(KIWAMI_PARAMETER_CONTRACTION, options.contraction);
+    set(KIWAMI_PARAMETER_LAYOUT, options.layout);
+    for (const Parameter& parameter : options.parameters) {
+      set(parameter.number, parameter.value);
+      if (parameter.number == KIWAMI_PARAMETER_NODE_COST) node_cost_ = parameter.value;
+      if (parameter.number == KIWAMI_PARAMETER_LEAF_COST) leaf_cost_ = parameter.value;
+    }
+  } catch (...) {
+    kiwami_scene_release(scene);
+    throw;
+  }
+  return scene;
+}
+
+void BuiltScene::own_closest_hits(std::span<const kiwami_ray> rays,
+                                  std::span<kiwami_hit> hits) const {
+  check(kiwami_closest_hit(scene_, rays.data(), 0, hits.data(), 0, rays.size(), nullptr), nullptr);
 }
 
 void BuiltScene::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const {
-  check(kiwami_closest_hit(scene_, rays.data(), 0, hits.data(), 0, rays.size(), nullptr), nullptr);
+  own_closest_hits(rays, hits);
+  if (instances_.empty()) return;
+  for (kiwami_hit& hit : hits) move_to_world(instances_, hit);
 }
 
 void BuiltScene::any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const {

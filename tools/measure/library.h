@@ -87,11 +87,10 @@ struct MeasuredTree {
   kiwami_bvh_measures total;
 };
 
-/// Owns a committed scene whose geometry i is mesh i of the file. It shares the file's buffers, so
-/// the file must outlive it.
+/// Owns a committed scene whose geometry i is mesh i of the file; or, of a file with instances, one
+/// of these over a scene of each mesh. It shares the file's buffers, so the file must outlive it.
 class BuiltScene : public Tracer {
  public:
-  /// `file` must have no instances (see flatten).
   BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options = {});
   /// A scene that was saved, with its tree; `load_flags` are KIWAMI_LOAD_*. It needs no other file.
   BuiltScene(const Device& device, const std::string& path, uint32_t load_flags);
@@ -99,13 +98,19 @@ class BuiltScene : public Tracer {
   BuiltScene(const BuiltScene&) = delete;
   BuiltScene& operator=(const BuiltScene&) = delete;
 
-  /// After the file's vertices have moved.
+  /// After the file's vertices have moved; not of a scene with instances.
   void refit();
 
+  /// Of a scene with instances: counts of triangles are those in the world, bytes and seconds are
+  /// those of all scenes, fill rates their means.
   const kiwami_scene_info& info() const { return info_; }
   /// Saves it with its tree, and tells the size of the file.
   uint64_t save(const std::string& path) const;
+  /// As of the flattened file: where there are instances, a hit's geometry is the instance, and its
+  /// normal that of the moved triangle.
   void closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const override;
+  /// As the library says it.
+  void own_closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const;
   void any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
   /// The same with one call a ray, each on the calling thread.
   void closest_hits_singly(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const;
@@ -122,16 +127,18 @@ class BuiltScene : public Tracer {
   kiwami_visits visits(std::span<const kiwami_ray> rays, bool any_hit) const;
 
  private:
-  void set_parameters(kiwami_device* device, const BuildOptions& options);
-  void attach(kiwami_device* device, const Mesh& mesh);
-  void commit(kiwami_result (*commit_function)(kiwami_scene*));
+  kiwami_scene* make_scene(kiwami_device* device, const BuildOptions& options);
+  void build(kiwami_device* device, const SceneFile& file, const BuildOptions& options);
+  void build_instances(kiwami_device* device, const SceneFile& file, const BuildOptions& options);
+  void attach(kiwami_device* device, kiwami_scene* scene, const Mesh& mesh);
   void release();
-  void read_info();
   kiwami_bvh_measures measure(const kiwami_bvh* bvh, uint32_t flags,
                               kiwami_bvh_node_measures* nodes) const;
 
+  std::vector<kiwami_scene*> shown_;  ///< the scenes of instances
   kiwami_scene* scene_ = nullptr;
   std::vector<kiwami_geometry*> geometries_;
+  std::vector<Instance> instances_;
   kiwami_scene_info info_{};
   double node_cost_ = 1.0;
   double leaf_cost_ = 1.0;

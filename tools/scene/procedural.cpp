@@ -5,6 +5,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "scene/forest.h"
 #include "scene/large_scenes.h"
 #include "scene/random.h"
 #include "scene/teapot_stadium.h"
@@ -16,10 +17,12 @@ constexpr uint32_t kMaxSphereLevel = 9;
 constexpr uint32_t kMaxTerrainCells = 4096;
 constexpr uint32_t kMaxSoupTriangles = 10000000;
 constexpr uint32_t kMaxLargeTriangles = 100000000;
+constexpr uint32_t kMaxForestTrees = 1000000;
 // What the names of the large scenes mean without a number.
 constexpr uint32_t kTerrainCells = 1415;
 constexpr uint32_t kHairballTriangles = 2000000;
 constexpr uint32_t kRoomTriangles = 10000000;
+constexpr uint32_t kForestTrees = 600;
 
 void push_vertex(Mesh& mesh, Vec3 v) { mesh.vertices.insert(mesh.vertices.end(), {v.x, v.y, v.z}); }
 
@@ -188,8 +191,9 @@ Mesh make_soup(uint32_t triangle_count, uint64_t seed) {
 }
 
 std::string procedural_scene_names() {
-  return "stadium, terrain, hairball, room, sphere:LEVEL, terrain:N, soup:N:SEED, hairball:N, "
-         "room:N";
+  return "stadium, terrain, hairball, room, forest, sphere:LEVEL, terrain:N, soup:N:SEED, "
+         "hairball:N, "
+         "room:N, forest:N";
 }
 
 std::optional<SceneFile> make_procedural_scene(const std::string& name) {
@@ -197,6 +201,7 @@ std::optional<SceneFile> make_procedural_scene(const std::string& name) {
   if (name == "terrain") return large_terrain();
   if (name == "hairball") return make_hairball(kHairballTriangles);
   if (name == "room") return make_room(kRoomTriangles);
+  if (name == "forest") return make_forest(kForestTrees);
   const size_t colon = name.find(':');
   if (colon == std::string::npos) return std::nullopt;
   const std::string kind = name.substr(0, colon);
@@ -216,6 +221,8 @@ std::optional<SceneFile> make_procedural_scene(const std::string& name) {
     scene = make_hairball(take_number(rest, name, "an N", 1, kMaxLargeTriangles));
   } else if (kind == "room") {
     scene = make_room(take_number(rest, name, "an N", 1, kMaxLargeTriangles));
+  } else if (kind == "forest") {
+    scene = make_forest(take_number(rest, name, "an N", 1, kMaxForestTrees));
   }
   if (scene && !rest.empty()) {
     throw SceneError("the scene '" + name + "' has more numbers than " + kind + " takes");

@@ -114,7 +114,29 @@ internal unsafe struct kiwami_scene_info {
   public fixed float bounds_max[3];
   public ulong reference_count;
   public ulong refit_count;
-  public const int Size = 152;
+  public ulong instance_count;
+  public ulong instance_tree_bytes;
+  public uint instance_depth;
+  public uint reserved;
+  public const int Size = 176;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_instances_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr scenes;
+  public ulong scene_count;
+  public IntPtr scene_indices;
+  public ulong scene_index_stride;
+  public IntPtr transforms;
+  public ulong transform_stride;
+  public ulong count;
+  public IntPtr masks;
+  public ulong mask_stride;
+  public uint mask;
+  public uint reserved;
+  public const int Size = 88;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -682,6 +704,11 @@ internal static class Native {
   public const uint KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20;
   public const uint KIWAMI_PARAMETER_LAYOUT = 21;
   public const uint KIWAMI_PARAMETER_QUALITY = 30;
+  public const uint KIWAMI_PARAMETER_REBRAID = 40;
+  public const uint KIWAMI_PARAMETER_REBRAID_BUDGET = 41;
+  public const uint KIWAMI_REBRAID_OFF = 0;
+  public const uint KIWAMI_REBRAID_FULL = 1;
+  public const uint KIWAMI_REBRAID_ROOTS = 2;
   public const uint KIWAMI_LAYOUT_FAST = 0;
   public const uint KIWAMI_LAYOUT_COMPACT = 1;
   public const uint KIWAMI_STAGE_BUILDER = 1;
@@ -714,6 +741,7 @@ internal static class Native {
   public const uint KIWAMI_CONTRACTION_OPTIMAL = 1;
   public const uint KIWAMI_CONTRACTION_RAY_DISTRIBUTION = 2;
   public const uint KIWAMI_MAX_OPTIMIZERS = 8;
+  public const uint KIWAMI_INSTANCES_SHARE_BUFFERS = 1;
   public const uint KIWAMI_RAY_CULL_BACK_FACES = 1;
   public const uint KIWAMI_RAY_CULL_FRONT_FACES = 2;
   public const uint KIWAMI_QUERY_CALLING_THREAD = 1;
@@ -849,6 +877,12 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_scene_validate(IntPtr scene);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_instances_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_instances_create(IntPtr device, IntPtr desc, IntPtr geometry);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_ray_fields_init(IntPtr rays, UIntPtr size);

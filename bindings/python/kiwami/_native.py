@@ -52,6 +52,11 @@ KIWAMI_PARAMETER_LBVH_DELTA = 19
 KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20
 KIWAMI_PARAMETER_LAYOUT = 21
 KIWAMI_PARAMETER_QUALITY = 30
+KIWAMI_PARAMETER_REBRAID = 40
+KIWAMI_PARAMETER_REBRAID_BUDGET = 41
+KIWAMI_REBRAID_OFF = 0
+KIWAMI_REBRAID_FULL = 1
+KIWAMI_REBRAID_ROOTS = 2
 KIWAMI_LAYOUT_FAST = 0
 KIWAMI_LAYOUT_COMPACT = 1
 KIWAMI_STAGE_BUILDER = 1
@@ -84,6 +89,7 @@ KIWAMI_CONTRACTION_SURFACE_AREA = 0
 KIWAMI_CONTRACTION_OPTIMAL = 1
 KIWAMI_CONTRACTION_RAY_DISTRIBUTION = 2
 KIWAMI_MAX_OPTIMIZERS = 8
+KIWAMI_INSTANCES_SHARE_BUFFERS = 1
 KIWAMI_RAY_CULL_BACK_FACES = 1
 KIWAMI_RAY_CULL_FRONT_FACES = 2
 KIWAMI_QUERY_CALLING_THREAD = 1
@@ -242,6 +248,28 @@ class kiwami_scene_info(ctypes.Structure):
         ("bounds_max", ctypes.c_float * 3),
         ("reference_count", ctypes.c_uint64),
         ("refit_count", ctypes.c_uint64),
+        ("instance_count", ctypes.c_uint64),
+        ("instance_tree_bytes", ctypes.c_uint64),
+        ("instance_depth", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
+class kiwami_instances_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("scenes", ctypes.c_void_p),
+        ("scene_count", ctypes.c_uint64),
+        ("scene_indices", ctypes.c_void_p),
+        ("scene_index_stride", ctypes.c_uint64),
+        ("transforms", ctypes.c_void_p),
+        ("transform_stride", ctypes.c_uint64),
+        ("count", ctypes.c_uint64),
+        ("masks", ctypes.c_void_p),
+        ("mask_stride", ctypes.c_uint64),
+        ("mask", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
     ]
 
 
@@ -763,7 +791,8 @@ SIZES = {
     kiwami_device_desc: 88,
     kiwami_device_info: 56,
     kiwami_triangle_mesh_desc: 80,
-    kiwami_scene_info: 152,
+    kiwami_scene_info: 176,
+    kiwami_instances_desc: 88,
     kiwami_ray: 48,
     kiwami_hit: 36,
     kiwami_input_field: 16,
@@ -914,6 +943,10 @@ def declare(library):
     library.kiwami_scene_get_info.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
     library.kiwami_scene_validate.restype = ctypes.c_int32
     library.kiwami_scene_validate.argtypes = [ctypes.c_void_p]
+    library.kiwami_instances_desc_init.restype = ctypes.c_int32
+    library.kiwami_instances_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_instances_create.restype = ctypes.c_int32
+    library.kiwami_instances_create.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
     library.kiwami_ray_fields_init.restype = ctypes.c_int32
     library.kiwami_ray_fields_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
     library.kiwami_hit_fields_init.restype = ctypes.c_int32

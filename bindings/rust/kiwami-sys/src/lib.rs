@@ -56,6 +56,11 @@ pub const KIWAMI_PARAMETER_LBVH_DELTA: u32 = 19;
 pub const KIWAMI_PARAMETER_LBVH_CHUNK_SIZE: u32 = 20;
 pub const KIWAMI_PARAMETER_LAYOUT: u32 = 21;
 pub const KIWAMI_PARAMETER_QUALITY: u32 = 30;
+pub const KIWAMI_PARAMETER_REBRAID: u32 = 40;
+pub const KIWAMI_PARAMETER_REBRAID_BUDGET: u32 = 41;
+pub const KIWAMI_REBRAID_OFF: u32 = 0;
+pub const KIWAMI_REBRAID_FULL: u32 = 1;
+pub const KIWAMI_REBRAID_ROOTS: u32 = 2;
 pub const KIWAMI_LAYOUT_FAST: u32 = 0;
 pub const KIWAMI_LAYOUT_COMPACT: u32 = 1;
 pub const KIWAMI_STAGE_BUILDER: u32 = 1;
@@ -88,6 +93,7 @@ pub const KIWAMI_CONTRACTION_SURFACE_AREA: u32 = 0;
 pub const KIWAMI_CONTRACTION_OPTIMAL: u32 = 1;
 pub const KIWAMI_CONTRACTION_RAY_DISTRIBUTION: u32 = 2;
 pub const KIWAMI_MAX_OPTIMIZERS: u32 = 8;
+pub const KIWAMI_INSTANCES_SHARE_BUFFERS: u32 = 1;
 pub const KIWAMI_RAY_CULL_BACK_FACES: u32 = 1;
 pub const KIWAMI_RAY_CULL_FRONT_FACES: u32 = 2;
 pub const KIWAMI_QUERY_CALLING_THREAD: u32 = 1;
@@ -258,8 +264,31 @@ pub struct kiwami_scene_info {
     pub bounds_max: [f32; 3],
     pub reference_count: u64,
     pub refit_count: u64,
+    pub instance_count: u64,
+    pub instance_tree_bytes: u64,
+    pub instance_depth: u32,
+    pub reserved: u32,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_scene_info>() == 152);
+const _: () = assert!(std::mem::size_of::<kiwami_scene_info>() == 176);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_instances_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub scenes: *mut *mut kiwami_scene,
+    pub scene_count: u64,
+    pub scene_indices: *const c_void,
+    pub scene_index_stride: u64,
+    pub transforms: *const c_void,
+    pub transform_stride: u64,
+    pub count: u64,
+    pub masks: *const c_void,
+    pub mask_stride: u64,
+    pub mask: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_instances_desc>() == 88);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -850,6 +879,8 @@ extern "C" {
     pub fn kiwami_scene_refit(scene: *mut kiwami_scene) -> kiwami_result;
     pub fn kiwami_scene_get_info(scene: *const kiwami_scene, info: *mut kiwami_scene_info) -> kiwami_result;
     pub fn kiwami_scene_validate(scene: *const kiwami_scene) -> kiwami_result;
+    pub fn kiwami_instances_desc_init(desc: *mut kiwami_instances_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_instances_create(device: *mut kiwami_device, desc: *const kiwami_instances_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
     pub fn kiwami_ray_fields_init(rays: *mut kiwami_ray_fields, size: usize) -> kiwami_result;
     pub fn kiwami_hit_fields_init(hits: *mut kiwami_hit_fields, size: usize) -> kiwami_result;
     pub fn kiwami_query_init(query: *mut kiwami_query, size: usize) -> kiwami_result;

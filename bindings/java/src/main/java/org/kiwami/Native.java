@@ -57,6 +57,11 @@ final class Native {
   static final int KIWAMI_PARAMETER_LBVH_CHUNK_SIZE = 20;
   static final int KIWAMI_PARAMETER_LAYOUT = 21;
   static final int KIWAMI_PARAMETER_QUALITY = 30;
+  static final int KIWAMI_PARAMETER_REBRAID = 40;
+  static final int KIWAMI_PARAMETER_REBRAID_BUDGET = 41;
+  static final int KIWAMI_REBRAID_OFF = 0;
+  static final int KIWAMI_REBRAID_FULL = 1;
+  static final int KIWAMI_REBRAID_ROOTS = 2;
   static final int KIWAMI_LAYOUT_FAST = 0;
   static final int KIWAMI_LAYOUT_COMPACT = 1;
   static final int KIWAMI_STAGE_BUILDER = 1;
@@ -89,6 +94,7 @@ final class Native {
   static final int KIWAMI_CONTRACTION_OPTIMAL = 1;
   static final int KIWAMI_CONTRACTION_RAY_DISTRIBUTION = 2;
   static final int KIWAMI_MAX_OPTIMIZERS = 8;
+  static final int KIWAMI_INSTANCES_SHARE_BUFFERS = 1;
   static final int KIWAMI_RAY_CULL_BACK_FACES = 1;
   static final int KIWAMI_RAY_CULL_FRONT_FACES = 2;
   static final int KIWAMI_QUERY_CALLING_THREAD = 1;
@@ -177,7 +183,7 @@ final class Native {
 
   /** Offsets of kiwami_scene_info. */
   static final class SceneInfo {
-    static final int STRUCT_BYTES = 152;
+    static final int STRUCT_BYTES = 176;
     static final int STRUCT_SIZE = 0;
     static final int BVH_WIDTH = 4;
     static final int LEAF_WIDTH = 8;
@@ -198,6 +204,28 @@ final class Native {
     static final int BOUNDS_MAX = 124;
     static final int REFERENCE_COUNT = 136;
     static final int REFIT_COUNT = 144;
+    static final int INSTANCE_COUNT = 152;
+    static final int INSTANCE_TREE_BYTES = 160;
+    static final int INSTANCE_DEPTH = 168;
+    static final int RESERVED = 172;
+  }
+
+  /** Offsets of kiwami_instances_desc. */
+  static final class InstancesDesc {
+    static final int STRUCT_BYTES = 88;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int SCENES = 8;
+    static final int SCENE_COUNT = 16;
+    static final int SCENE_INDICES = 24;
+    static final int SCENE_INDEX_STRIDE = 32;
+    static final int TRANSFORMS = 40;
+    static final int TRANSFORM_STRIDE = 48;
+    static final int COUNT = 56;
+    static final int MASKS = 64;
+    static final int MASK_STRIDE = 72;
+    static final int MASK = 80;
+    static final int RESERVED = 84;
   }
 
   /** Offsets of kiwami_ray. */
@@ -785,6 +813,10 @@ final class Native {
   static native int kiwami_scene_get_info(Pointer scene, Pointer info);
 
   static native int kiwami_scene_validate(Pointer scene);
+
+  static native int kiwami_instances_desc_init(Pointer desc, long size);
+
+  static native int kiwami_instances_create(Pointer device, Pointer desc, Pointer geometry);
 
   static native int kiwami_ray_fields_init(Pointer rays, long size);
 

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/geometry.h"
+#include "kiwami/instances.h"
+#include "math/affine.h"
+
+namespace kiwami {
+
+class Scene;
+
+/// Both ways between the space of an instanced scene and the one that it stands in.
+struct InstanceTransform {
+  /// Into the instanced scene, as kernels apply it: rounded to floats.
+  float inverse[4][3];
+  /// The inverse of that: what is nearest to the given matrix of all that belongs to these floats.
+  Affine forward;
+  /// Row sum norms of the two linear parts.
+  double inverse_norm, forward_norm;
+};
+
+/// What the floats of inverse stand for.
+InstanceTransform transform_of(const float (&inverse)[4][3]);
+
+/// An array of instances of one or several scenes: the caller's buffers, or packed copies of them.
+class Instances final : public Geometry {
+ public:
+  /// Throws Error(INVALID_ARGUMENT, TOO_LARGE or OUT_OF_MEMORY).
+  static Instances* create(Device& device, const kiwami_instances_desc& desc);
+
+  Instances(Device& device, const kiwami_instances_desc& desc);
+  ~Instances();
+
+  uint32_t count() const { return count_; }
+  uint32_t scene_count() const { return static_cast<uint32_t>(scenes_.size()); }
+  Scene& scene(uint32_t index) const { return *scenes_[index]; }
+  bool has_masks() const { return masks_.first != nullptr; }
+  size_t copied_bytes() const override {
+    return indices_.copy.bytes() + transforms_.copy.bytes() + masks_.copy.bytes();
+  }
+
+  // Of one instance, as the buffers are now.
+  uint32_t scene_index(uint32_t instance) const;
+  uint32_t instance_mask(uint32_t instance) const;
+  /// False for a matrix that is not finite or singular.
+  bool invert(uint32_t instance, InstanceTransform& transform) const;
+
+  /// Throws Error(INVALID_ARGUMENT) that names the first instance whose scene index is out of range
+  /// or whose matrix is singular.
+  void check_instances() const;
+
+ private:
+  /// Elements that lie a stride apart.
+  struct Elements {
+    const unsigned char* first = nullptr;  ///< nullptr: none
+    size_t stride = 0;
+    Array<unsigned char> copy;
+
+    const unsigned char* at(uint32_t i) const { return first + size_t{i} * stride; }
+  };
+
+  void end(Memory& memory) noexcept override { destroy_object(memory, this); }
+  Elements elements_of(const char* name, const char* stride_name, const void* data, uint64_t stride,
+                       size_t element_size, bool is_shared);
+  bool is_valid(uint32_t instance) const;
+
+  uint32_t count_;
+  Array<Scene*> scenes_;
+  Elements indices_, transforms_, masks_;
+};
+
+}  // namespace kiwami

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why every hit is found
+//
+// A ray o + t d meets instances by their boxes in the outer space, and what they show by the ray
+// o' + t d' in the space of their scene. Let B x + b be the map into that space, as the floats of
+// the record have it, F its inverse, and |.| the greatest absolute coordinate or the row sum norm.
+// The record's floats are what counts: boxes are made of F, whatever the rounding of the inverse.
+//
+// A hit at t in the instanced scene is at a point P' of what was hit plus an error e', that is o' +
+// t d' = P' + e'. With the roundings r and s of o' = B o + b + r, |r| <= 4 u (|B| |o| + |b|), and
+// d' = B d + s, |s| <= 3 u |B| |d|, the point on the outer ray is
+//   o + t d = F (P' - b) + F (e' - r - t s),
+// where F (P' - b) lies in the instance's box. So along each axis it is outside by at most
+//   |F| (|e'| + 4 u (|B| |o| + |b|) + 3 u |B| t |d|).
+// By induction over the levels, |e'| <= u (p' |o'| + f') with the HitError of the instanced scene,
+// |o'| <= |B| |o| + |b|, and t |d| is at most |o| + Q plus the error itself, Q being the greatest
+// coordinate of the box. With the condition number k = |F| |B|, this is a HitError again:
+//   per_origin = k (p' + 7),   fixed = |F| ((p' + 4) |b| + f' + 3 |B| Q),
+// times 1.25: the error that stands on the right is at most 3 u k < 3/16 of the whole (k <= 2^20),
+// and what remains is for products of errors and for F, whose double entries are off by far less.
+//
+// The tree's boxes are those of the instances, wider by that error for origins up to far_origin;
+// for rays that start farther away the kernels widen the slabs by per_origin times what is beyond.
+#include "core/scene_instances.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "core/committed_scene.h"
+#include "core/error.h"
+#include "core/scene.h"
+#include "math/rounding.h"
+#include "wide/slot_owners.h"
+
+namespace kiwami {
+namespace {
+
+/// Instances that one task looks at.
+constexpr size_t kBlockSize = 4096;
+/// Numbers are 32 bits wide, and their highest value names nothing.
+constexpr uint64_t kMaxInstanceCount = 0xFFFFFFFEu;
+
+constexpr double kUnit = 0x1p-24;
+constexpr double kSafety = 1.25;
+/// Products of the transform may be denormal.
+constexpr double kLeastError = 0x1p-100;
+/// Boxes end here: nothing beyond KIWAMI_MAX_COORDINATE is promised to be hit.
+constexpr double kMaxBound = 2.0 * double{KIWAMI_MAX_COORDINATE};
+
+using ull = unsigned long long;
+
+double greatest_coordinate(const Bounds& bounds) {
+  double greatest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    greatest = std::max(
+        {greatest, std::fabs(double{bounds.lower[axis]}), std::fabs(double{bounds.upper[axis]})});
+  }
+  return greatest;
+}
+
+/// The box of a box's image, wider by a margin and rounded outwards.
+Bounds image_of(const Affine& map, const Bounds& box, double margin) {
+  Bounds image;
+  for (int row = 0; row < 3; ++row) {
+    double lower = map.column[3][row], upper = lower;
+    for (int k = 0; k < 3; ++k) {
+      const double a = map.column[k][row] * double{box.lower[k]};
+      const double b = map.column[k][row] * double{box.upper[k]};
+      lower += std::min(a, b);
+      upper += std::max(a, b);
+    }
+    image.lower[row] = round_down(std::clamp(lower - margin, -kMaxBound, kMaxBound));
+    image.upper[row] = round_up(std::clamp(upper + margin, -kMaxBound, kMaxBound));
+  }
+  return image;
+}
+
+/// Calls visit(instances, geometry_id) for each geometry that is instances.
+template <typename Visit>
+void for_each_instances(const AttachedGeometry* geometries, size_t count, Visit&& visit) {
+  for (size_t i = 0; i < count; ++i) {
+    if (geometries[i].geometry->kind() != GeometryKind::kInstances) continue;
+    visit(static_cast<const Instances&>(*geometries[i].geometry), geometries[i].geometry_id);
+  }
+}
+
+CommittedScene& committed_scene_of(const Instances& instances, uint32_t index, uint32_t geometry_id,
+                                   uint32_t width) {
+  CommittedScene* const scene = instances.scene(index).committed();
+  if (!scene) {
+    throw Error(KIWAMI_ERROR_INVALID_STATE,
+                "scene %u of geometry %u was never committed, expected a successful "
+                "kiwami_scene_commit before",
+                index, geometry_id);
+  }
+  if (scene->width() != width) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "scene %u of geometry %u has %u children a node, expected %u as the scene that "
+                "instances it",
+                index, geometry_id, scene->width(), width);
+  }
+  if (scene->instance_depth() >= KIWAMI_MAX_INSTANCE_DEPTH) {
+    throw Error(KIWAMI_ERROR_TOO_LARGE,
+                "scene %u of geometry %u has paths of %u instances, expected at most %d here",
+                index, geometry_id, scene->instance_depth(), KIWAMI_MAX_INSTANCE_DEPTH - 1);
+  }
+  return *scene;
+}
+
+/// The boxes of references, numbered as leaves name them: by their position, or their instance.
+Array<BuildPrimitive> boxes_of(const Array<BraidReference>& references, bool has_starts,
+                               Memory& memory) {
+  Array<BuildPrimitive> boxes(memory, references.size());
+  for (size_t i = 0; i < references.size(); ++i) {
+    const uint32_t id = has_starts ? static_cast<uint32_t>(i) : references[i].start.instance;
+    boxes[i] = {references[i].box.lower, id, references[i].box.upper, 0};
+  }
+  return boxes;
+}
+
+/// An instance costs as much as a whole tree, so each has a box of its own. Triangles alone can be
+/// cut.
+SceneParameters for_instances(SceneParameters parameters) {
+  parameters.set(KIWAMI_PARAMETER_MAX_LEAF_SIZE, 1);
+  if (parameters.whole(KIWAMI_PARAMETER_BUILDER) == KIWAMI_BUILDER_SPATIAL_SPLIT) {
+    parameters.set(KIWAMI_PARAMETER_BUILDER, KIWAMI_BUILDER_BINNED_SAH);
+  }
+  return parameters;
+}
+
+}  // namespace
+
+void HitError::extend(const HitError& other) {
+  per_origin = std::max(per_origin, other.per_origin);
+  fixed = std::max(fixed, other.fixed);
+}
+
+HitError HitError::of_triangles(const Bounds& bounds) {
+  if (bounds.is_empty()) return {};
+  return {18.0, 18.0 * 2.001 * greatest_coordinate(bounds) + kLeastError / kUnit};
+}
+
+/// What one instance shows: the box of it, and the error of hits there.
+struct SceneInstances::Extent {
+  Affine forward;
+  Bounds inner;   ///< in the space of its scene; empty: nothing
+  Bounds bounds;  ///< in the outer space
+  HitError error;
+};
+
+SceneInstances::~SceneInstances() {
+  for (CommittedScene* scene : scenes_) scene->release();
+}
+
+void SceneInstances::build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan) {
+  width_ = plan.width;
+  collect_prototypes(geometries, count, plan.width, plan.memory);
+  if (prototypes_.empty()) return;
+  fill_records(geometries, count, plan.memory, plan.parallel);
+  measure(plan.memory, plan.parallel);
+  rebraid_mode_ = plan.parameters.whole(KIWAMI_PARAMETER_REBRAID);
+  rebraid_config_.opens_roots_only = rebraid_mode_ == KIWAMI_REBRAID_ROOTS;
+  rebraid_config_.budget = plan.parameters[KIWAMI_PARAMETER_REBRAID_BUDGET];
+  const Array<BraidReference> references = make_references(plan.memory, plan.parallel);
+  if (rebraid_mode_ != KIWAMI_REBRAID_OFF) {
+    starts_ = Array<InstanceStart>(plan.memory, references.size());
+    for (size_t i = 0; i < references.size(); ++i) starts_[i] = references[i].start;
+  }
+  data_ = {records_.data(), prototypes_.data(), masks_.empty() ? nullptr : masks_.data(),
+           starts_.empty() ? nullptr : starts_.data()};
+  const SceneParameters parameters = for_instances(plan.parameters);
+  tree_ = build_part_tree(boxes_of(references, !starts_.empty(), plan.memory),
+                          {parameters, plan.width, plan.memory, plan.parallel});
+}
+
+void SceneInstances::collect_prototypes(const AttachedGeometry* geometries, size_t count,
+                                        uint32_t width, Memory& memory) {
+  size_t prototype_count = 0;
+  for_each_instances(geometries, count, [&](const Instances& instances, uint32_t) {
+    prototype_count += instances.scene_count();
+  });
+  prototypes_ = Array<Prototype>(memory, prototype_count);
+  Array<CommittedScene*> scenes(memory, prototype_count);
+  size_t used = 0;
+  for_each_instances(geometries, count, [&](const Instances& instances, uint32_t geometry_id) {
+    for (uint32_t i = 0; i < instances.scene_count(); ++i) {
+      CommittedScene& scene = committed_scene_of(instances, i, geometry_id, width);
+      prototypes_[used] = {&scene.view(), instances.mask()};
+      scenes[used++] = &scene;
+      depth_ = std::max(depth_, scene.instance_depth() + 1);
+    }
+  });
+  for (CommittedScene* scene : scenes) scene->retain();
+  scenes_ = std::move(scenes);
+}
+
+void SceneInstances::fill_records(const AttachedGeometry* geometries, size_t count, Memory& memory,
+                                  const Parallel& parallel) {
+  uint64_t record_count = 0;
+  bool has_masks = false;
+  for_each_instances(geometries, count, [&](const Instances& instances, uint32_t geometry_id) {
+    record_count += instances.count();
+    has_masks = has_masks || instances.has_masks();
+    if (record_count <= kMaxInstanceCount) return;
+    throw Error(KIWAMI_ERROR_TOO_LARGE,
+                "the scene has %llu instances up to geometry %u, expected at most %llu",
+                ull{record_count}, geometry_id, ull{kMaxInstanceCount});
+  });
+  records_ = Array<InstanceRecord>(memory, static_cast<size_t>(record_count));
+  if (has_masks) masks_ = Array<uint32_t>(memory, static_cast<size_t>(record_count));
+  size_t first = 0;
+  uint32_t first_prototype = 0;
+  for_each_instances(geometries, count, [&](const Instances& instances, uint32_t) {
+    std::atomic<bool> is_faulty{false};
+    parallel.for_blocks(instances.count(), kBlockSize, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const auto instance = static_cast<uint32_t>(i);
+        const uint32_t scene_index = instances.scene_index(instance);
+        InstanceTransform transform;
+        if (scene_index >= instances.scene_count() || !instances.invert(instance, transform)) {
+          is_faulty.store(true, std::memory_order_relaxed);
+          return;
+        }
+        InstanceRecord& record = records_[first + i];
+        std::copy_n(&transform.inverse[0][0], 12, &record.column[0][0]);
+        record.prototype = first_prototype + scene_index;
+        if (has_masks) masks_[first + i] = instances.instance_mask(instance);
+      }
+    });
+    // Shared buffers may have changed since they were checked.
+    if (is_faulty.load()) instances.check_instances();
+    first += instances.count();
+    first_prototype += instances.scene_count();
+  });
+}
+
+SceneInstances::Extent SceneInstances::extent_of(uint32_t instance) const {
+  const InstanceRecord& record = records_[instance];
+  const CommittedScene& scene = *scenes_[record.prototype];
+  Extent extent;
+  extent.inner = extent.bounds = scene.bounds();
+  if (extent.inner.is_empty()) return extent;
+  const InstanceTransform transform = transform_of(record.column);
+  const double b =
+      std::max({std::fabs(double{record.column[3][0]}), std::fabs(double{record.column[3][1]}),
+                std::fabs(double{record.column[3][2]})});
+  const HitError& inner = scene.hit_error();
+  extent.forward = transform.forward;
+  extent.bounds = image_of(transform.forward, extent.inner, 0.0);
+  extent.error.per_origin =
+      kSafety * transform.forward_norm * transform.inverse_norm * (inner.per_origin + 7.0);
+  extent.error.fixed =
+      kSafety * transform.forward_norm *
+      ((inner.per_origin + 4.0) * b + inner.fixed +
+       3.0 * transform.inverse_norm * greatest_coordinate(extent.bounds) + kLeastError / kUnit);
+  return extent;
+}
+
+void SceneInstances::measure(Memory& memory, const Parallel& parallel) {
+  struct Sum {
+    Bounds bounds;
+    HitError error;
+  };
+  Array<Sum> sums(memory, (records_.size() + kBlockSize - 1) / kBlockSize);
+  parallel.for_blocks(records_.size(), kBlockSize, [&](size_t begin, size_t end) {
+    Sum sum{Bounds::empty(), {}};
+    for (size_t i = begin; i < end; ++i) {
+      const Extent extent = extent_of(static_cast<uint32_t>(i));
+      sum.bounds.extend(extent.bounds);
+      sum.error.extend(extent.error);
+    }
+    sums[begin / kBlockSize] = sum;
+  });
+  for (const Sum& sum : sums) {
+    bounds_.extend(sum.bounds);
+    error_.extend(sum.error);
+  }
+  if (!bounds_.is_empty()) far_origin_ = static_cast<float>(2.0 * greatest_coordinate(bounds_));
+}
+
+/// The trees of the shown scenes, in the space of the outer one.
+class SceneInstances::Trees final : public BraidSource {
+ public:
+  explicit Trees(const SceneInstances& all) : all_(all) {}
+
+  /// Of a whole instance; its box is empty where it shows nothing.
+  BraidReference root_of(uint32_t instance) const {
+    const CommittedScene& scene = scene_of(instance);
+    BraidReference root{Bounds::empty(), {instance, InstanceStart::kAllTrees, {}}, 0.0f, true};
+    root.weight = static_cast<float>(std::max<uint64_t>(scene.primitive_count(), 1));
+    const Extent extent = all_.extent_of(instance);
+    if (!extent.inner.is_empty()) root.box = box_of(extent, extent.inner);
+    return root;
+  }
+
+  uint32_t open(const BraidReference& reference,
+                BraidReference (&children)[kMaxChildren]) const override {
+    const Extent extent = all_.extent_of(reference.start.instance);
+    const SceneView& view = scene_of(reference.start.instance).view();
+    if (reference.start.tree == InstanceStart::kAllTrees) {
+      // A scene of one tree is opened to the children of its root at once.
+      if (view.part_count == 0)
+        return open_node(reference, extent, view.tree, 0, view.tree.root, children);
+      if (view.tree.root.mask() == 0 && view.part_count == 1) {
+        return open_node(reference, extent, view.parts[0].tree, 1, view.parts[0].tree.root,
+                         children);
+      }
+      return open_trees(reference, extent, view, children);
+    }
+    const uint32_t tree = reference.start.tree;
+    return open_node(reference, extent, tree == 0 ? view.tree : view.parts[tree - 1].tree, tree,
+                     reference.start.subtree, children);
+  }
+
+ private:
+  const CommittedScene& scene_of(uint32_t instance) const {
+    return *all_.scenes_[all_.records_[instance].prototype];
+  }
+
+  /// The image of a box of the scene, with room for the error of hits.
+  Bounds box_of(const Extent& extent, const Bounds& inner) const {
+    const double error =
+        kUnit * (extent.error.per_origin * double{all_.far_origin_} + extent.error.fixed);
+    return image_of(extent.forward, inner, error);
+  }
+
+  uint32_t open_trees(const BraidReference& reference, const Extent& extent, const SceneView& view,
+                      BraidReference (&children)[kMaxChildren]) const {
+    uint32_t count = 0;
+    const auto add = [&](const TreeView& tree, uint32_t number) {
+      Bounds box;
+      for (int axis = 0; axis < 3; ++axis) {
+        box.lower[axis] = next_down(tree.centre[axis] - tree.greatest_bound[axis]);
+        box.upper[axis] = next_up(tree.centre[axis] + tree.greatest_bound[axis]);
+      }
+      children[count++] = {box_of(extent, box),
+                           {reference.start.instance, number, tree.root},
+                           reference.weight,
+                           false};
+    };
+    if (view.tree.root.mask() != 0) add(view.tree, 0);
+    for (uint32_t i = 0; i < view.part_count; ++i) add(view.parts[i].tree, i + 1);
+    share_weight(reference, children, count);
+    return count;
+  }
+
+  uint32_t open_node(const BraidReference& reference, const Extent& extent, const TreeView& tree,
+                     uint32_t number, ChildReference subtree,
+                     BraidReference (&children)[kMaxChildren]) const {
+    if (subtree.is_leaf()) return 0;
+    uint32_t count = 0;
+    with_width(all_.width_, [&](auto width) {
+      const auto& node = node_at<width>(tree.memory, subtree);
+      for (uint32_t mask = subtree.mask(); mask != 0; mask &= mask - 1) {
+        const int slot = std::countr_zero(mask);
+        Bounds box;
+        for (int axis = 0; axis < 3; ++axis) {
+          box.lower[axis] = next_down(node.bounds[axis][0][slot] + tree.centre[axis]);
+          box.upper[axis] = next_up(node.bounds[axis][1][slot] + tree.centre[axis]);
+        }
+        children[count++] = {box_of(extent, box),
+                             {reference.start.instance, number, node.child[slot]},
+                             reference.weight,
+                             false};
+      }
+    });
+    share_weight(reference, children, count);
+    return count;
+  }
+
+  /// By area: what it is among children is not known.
+  static void share_weight(const BraidReference& reference,
+                           BraidReference (&children)[kMaxChildren], uint32_t count) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < count; ++i) sum += double{children[i].box.half_area()};
+    for (uint32_t i = 0; i < count; ++i) {
+      const double share = sum > 0.0 ? double{children[i].box.half_area()} / sum : 1.0 / count;
+      children[i].weight = static_cast<float>(double{reference.weight} * share);
+    }
+  }
+
+  const SceneInstances& all_;
+};
+
+/// Of the instances that show something, by rising number; or what they are opened into.
+Array<BraidReference> SceneInstances::make_references(Memory& memory,
+                                                      const Parallel& parallel) const {
+  const Trees trees(*this);
+  Array<BraidReference> references(memory, records_.size());
+  parallel.for_blocks(records_.size(), kBlockSize, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) references[i] = trees.root_of(static_cast<uint32_t>(i));
+  });
+  size_t used = 0;
+  for (const BraidReference& reference : references) {
+    if (!reference.box.is_empty()) references[used++] = reference;
+  }
+  references.shrink(used);
+  if (rebraid_mode_ == KIWAMI_REBRAID_OFF) return references;
+  return rebraid(std::move(references), trees, rebraid_config_, memory);
+}
+
+ScenePart SceneInstances::part() const {
+  const double margin = kUnit * 1.001 * error_.per_origin;
+  return {PartKind::kInstances, tree_.tree.view, &data_, far_origin_,
+          static_cast<float>(std::min(margin, double{std::numeric_limits<float>::max()}))};
+}
+
+void SceneInstances::validate(Memory& memory, const Parallel& parallel) const {
+  if (!can_be_hit()) return;
+  const Array<BraidReference> references = make_references(memory, parallel);
+  const Array<BuildPrimitive> boxes = boxes_of(references, !starts_.empty(), memory);
+  verify_wide_tree(tree_.tree, {boxes.data(), boxes.size()}, memory);
+}
+
+}  // namespace kiwami
