@@ -89,15 +89,62 @@ typedef struct kiwami_hit_fields {
   kiwami_output_field primitive_id, geometry_id, instance_id; /* uint32 */
 } kiwami_hit_fields;
 
+/* What a ray is not to meet: one triangle (or other primitive), such as the one that it leaves.
+ * Laid out as the end of a kiwami_hit, so that {&hits->primitive_id, sizeof *hits} excludes what
+ * was hit before. 12 bytes, at any address. */
+typedef struct kiwami_exclusion {
+  uint32_t primitive_id; /* KIWAMI_INVALID_ID: nothing is excluded */
+  uint32_t geometry_id;
+  uint32_t instance_id; /* the outermost instance; KIWAMI_INVALID_ID outside instances */
+} kiwami_exclusion;
+
+/* What a filter is asked about: a hit between tmin and tmax that masks, sides and exclusions leave.
+ * It lives until the filter returns. */
+typedef struct kiwami_filter_candidate {
+  uint32_t struct_size; /* bytes of this struct, as the library knows it */
+  uint32_t depth;       /* instances that lead to the hit */
+  uint64_t ray;         /* the number of the ray in the call */
+  kiwami_hit hit;
+  uint32_t reserved;                                 /* 0 */
+  uint32_t instance_path[KIWAMI_MAX_INSTANCE_DEPTH]; /* KIWAMI_INVALID_ID beyond the depth */
+} kiwami_filter_candidate;
+
+enum {
+  KIWAMI_FILTER_REJECT = 0, /* the hit is none */
+  KIWAMI_FILTER_ACCEPT = 1,
+  KIWAMI_FILTER_ACCEPT_AND_STOP = 2 /* and nothing more is looked for along this ray */
+};
+
+/* Decides whether hits count: returns one of KIWAMI_FILTER_*, or a negative number when it failed:
+ * the call then returns KIWAMI_ERROR_CALLBACK, as for any other number, and traces no further rays.
+ * It is called on the thread that traces the ray: the caller's own, or those of the device, of
+ * which several call it at once unless KIWAMI_QUERY_CALLING_THREAD is set. It must not throw, nor
+ * change the floating-point state; it may trace rays, with KIWAMI_QUERY_CALLING_THREAD. */
+typedef int32_t (*kiwami_filter_function)(void* user, const kiwami_filter_candidate* candidate);
+
 /* What a trace call may be told beyond the rays. */
 typedef struct kiwami_query {
   uint32_t struct_size; /* bytes of this struct, set by kiwami_query_init */
   uint32_t flags;       /* KIWAMI_QUERY_* */
   /* Receives the whole path of each closest hit: KIWAMI_MAX_INSTANCE_DEPTH uint32 a ray, the
    * numbers of the instances from the outermost on, KIWAMI_INVALID_ID beyond the depth of the hit
-   * and for a miss. NULL: not wanted. Not used by kiwami_any_hit. */
+   * and for a miss. NULL: not wanted. With kiwami_multi_hit it has a path for each of the
+   * hit_capacity hits. Not used by kiwami_any_hit nor kiwami_count_hits. */
   uint32_t* instance_paths;
   uint64_t instance_path_stride; /* bytes from one ray's path to the next; 0: 32 */
+  /* What each ray is not to meet, exclusion_stride bytes apart (0: 12). NULL: nothing. */
+  const kiwami_exclusion* exclusions;
+  uint64_t exclusion_stride;
+  /* The whole paths to what the rays are not to meet, as in instance_paths; then the instance_id of
+   * an exclusion is not read. NULL: every path whose outermost instance it is. */
+  const uint32_t* exclusion_paths;
+  uint64_t exclusion_path_stride; /* 0: 32 */
+  /* Decides whether hits count; NULL: all do. It is called at most once for each crossing of a ray
+   * and a surface. A closest hit is the least one that the filter accepts, if what it says depends
+   * on the candidate alone; which others it is asked about, and in which order, is not told. Calls
+   * that find several hits ask it from front to back, about no more than it takes. */
+  kiwami_filter_function filter;
+  void* filter_user; /* handed to the filter */
 } kiwami_query;
 
 enum {
@@ -120,7 +167,7 @@ KIWAMI_API kiwami_result kiwami_query_init(kiwami_query* query, size_t size);
  *   query       NULL for the defaults
  * Large batches run on the device's threads, each ray's answer being the same as alone.
  *   errors      INVALID_STATE: the scene was never committed; INVALID_ARGUMENT: an unknown query
- *               flag; CALLBACK: the runner failed. With KIWAMI_DEVICE_VALIDATE also
+ *               flag; CALLBACK: the runner or the filter failed. With KIWAMI_DEVICE_VALIDATE also
  *               INVALID_ARGUMENT: NULL, a stride too small, an extent that overflows.
  * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_closest_hit(const kiwami_scene* scene, const kiwami_ray* rays,

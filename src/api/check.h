@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/geometry.h"
 #include "core/scene.h"
+#include "core/triangle_mesh.h"
 
 namespace kiwami::api {
 
@@ -74,6 +75,17 @@ inline const Device* device_of(const kiwami_bvh* bvh) {
 
 inline const Device* device_of(kiwami_geometry* geometry) {
   return geometry ? &object_of(geometry)->device() : nullptr;
+}
+
+/// The mesh behind a handle; throws Error for one that is NULL or another kind of geometry.
+inline TriangleMesh& triangle_mesh_of(const kiwami_geometry* handle, const char* name) {
+  check_not_null(handle, name);
+  Geometry& geometry = *object_of(const_cast<kiwami_geometry*>(handle));
+  if (geometry.kind() != GeometryKind::kTriangleMesh) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "%s is a geometry of another kind, expected a triangle mesh", name);
+  }
+  return static_cast<TriangleMesh&>(geometry);
 }
 
 /// What a scene committed; throws Error for a scene that is NULL or was never committed.

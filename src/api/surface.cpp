@@ -71,16 +71,6 @@ kiwami_interpolation read_interpolation(const kiwami_interpolation* given, size_
   return read;
 }
 
-const TriangleMesh& mesh_of(const kiwami_geometry* handle) {
-  check_not_null(handle, "mesh");
-  const auto& geometry = *reinterpret_cast<const Geometry*>(handle);
-  if (geometry.kind() != GeometryKind::kTriangleMesh) {
-    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
-                "mesh is a geometry of another kind, expected a triangle mesh");
-  }
-  return static_cast<const TriangleMesh&>(geometry);
-}
-
 HitRun hit_run(const CommittedScene& scene, const kiwami_hit* hits, size_t stride, size_t count) {
   const size_t step = stride ? stride : sizeof(kiwami_hit);
   if (count != 0) {
@@ -113,7 +103,7 @@ kiwami_result kiwami_interpolate(const kiwami_geometry* mesh,
                                  const kiwami_interpolation* interpolation, size_t count) {
   const Device* device = mesh ? &reinterpret_cast<const Geometry*>(mesh)->device() : nullptr;
   return guarded(device, [&] {
-    const TriangleMesh& triangles = mesh_of(mesh);
+    const TriangleMesh& triangles = triangle_mesh_of(mesh, "mesh");
     const kiwami_interpolation read = read_interpolation(interpolation, count);
     check_extent("interpolation.indices", read.indices ? read.indices : &read, read.index_stride,
                  3 * sizeof(uint32_t), read.indices ? triangles.triangle_count() : 0);

@@ -22,27 +22,62 @@ constexpr kiwami_query kDefaultQuery{};
 constexpr uint32_t kQueryFlags = KIWAMI_QUERY_CALLING_THREAD;
 constexpr size_t kInstancePathSize = KIWAMI_MAX_INSTANCE_DEPTH * sizeof(uint32_t);
 
-/// What a checked query asks for.
-TraceRequest request_of(const kiwami_query& query) {
-  return {{reinterpret_cast<unsigned char*>(query.instance_paths),
-           query.instance_path_stride ? static_cast<size_t>(query.instance_path_stride)
-                                      : kInstancePathSize},
-          (query.flags & KIWAMI_QUERY_CALLING_THREAD) != 0};
+/// A stride that stands for itself, or for the size of an element where it is 0.
+size_t stride_or(uint64_t stride, size_t size) {
+  return stride ? static_cast<size_t>(stride) : size;
 }
 
-/// What a query asks for of count rays.
-TraceRequest read_query(const kiwami_query* query, const CommittedScene& committed, size_t count) {
+/// What a checked query asks for.
+TraceRequest request_of(const kiwami_query& query) {
+  TraceRequest request{};
+  QueryOptions& options = request.options;
+  options.instance_paths = reinterpret_cast<unsigned char*>(query.instance_paths);
+  options.instance_path_stride = stride_or(query.instance_path_stride, kInstancePathSize);
+  options.exclusions = reinterpret_cast<const unsigned char*>(query.exclusions);
+  options.exclusion_stride = stride_or(query.exclusion_stride, sizeof(kiwami_exclusion));
+  options.exclusion_paths = reinterpret_cast<const unsigned char*>(query.exclusion_paths);
+  options.exclusion_path_stride = stride_or(query.exclusion_path_stride, kInstancePathSize);
+  options.filter = query.filter;
+  options.filter_user = query.filter_user;
+  request.on_calling_thread = (query.flags & KIWAMI_QUERY_CALLING_THREAD) != 0;
+  return request;
+}
+
+/// Checks the arrays of a query for count rays, and path_count paths to what they meet.
+void check_query_arrays(const kiwami_query& query, size_t count, size_t path_count) {
+  if (query.instance_paths && path_count != 0) {
+    check_array("query.instance_paths", query.instance_paths,
+                static_cast<size_t>(query.instance_path_stride), kInstancePathSize, path_count);
+  }
+  if (count == 0) return;
+  if (query.exclusions) {
+    check_array("query.exclusions", query.exclusions, static_cast<size_t>(query.exclusion_stride),
+                sizeof(kiwami_exclusion), count);
+  }
+  if (query.exclusion_paths) {
+    check_array("query.exclusion_paths", query.exclusion_paths,
+                static_cast<size_t>(query.exclusion_path_stride), kInstancePathSize, count);
+  }
+}
+
+/// What a query asks for of count rays, of which path_count paths are told.
+TraceRequest read_query(const kiwami_query* query, const CommittedScene& committed, size_t count,
+                        size_t path_count) {
   if (!query) return request_of(kDefaultQuery);
   const kiwami_query checked = read_descriptor(query, kMinimumStructSize, "query", kDefaultQuery);
   if (checked.flags & ~kQueryFlags) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "query.flags is 0x%x, expected KIWAMI_QUERY_* bits",
                 checked.flags);
   }
-  if (committed.validates_arguments() && checked.instance_paths && count != 0) {
-    check_array("query.instance_paths", checked.instance_paths,
-                static_cast<size_t>(checked.instance_path_stride), kInstancePathSize, count);
+  if (checked.exclusion_paths && !checked.exclusions) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "query.exclusion_paths is not NULL and query.exclusions is, expected both or none");
   }
+  if (committed.validates_arguments()) check_query_arrays(checked, count, path_count);
   return request_of(checked);
+}
+TraceRequest read_query(const kiwami_query* query, const CommittedScene& committed, size_t count) {
+  return read_query(query, committed, count, count);
 }
 
 void check_output_field(const char* name, const kiwami_output_field& field, size_t count) {
@@ -118,7 +153,8 @@ inline bool answer_few(const kiwami_scene* scene, const Question& question, cons
   if (!scene || batch.count >= kParallelCount) return false;
   const CommittedScene* committed = object_of(scene)->committed();
   if (!committed || committed->validates_arguments()) return false;
-  if (query && (query->struct_size != sizeof(kiwami_query) || (query->flags & ~kQueryFlags) != 0)) {
+  if (query && (query->struct_size != sizeof(kiwami_query) || (query->flags & ~kQueryFlags) != 0 ||
+                query->filter || query->exclusion_paths)) {
     return false;
   }
   const DefaultFloatEnvironment environment;
@@ -246,8 +282,9 @@ kiwami_result kiwami_multi_hit(const kiwami_scene* scene, const kiwami_ray* rays
                                const kiwami_query* query) {
   return guarded(device_of(scene), [&] {
     const CommittedScene& committed = committed_of(scene);
-    const MultiHitRequest request{max_hits, hit_capacity, offsets,
-                                  read_query(query, committed, count).on_calling_thread};
+    const TraceRequest trace =
+        read_query(query, committed, count, static_cast<size_t>(hit_capacity));
+    const MultiHitRequest request{max_hits, hit_capacity, offsets, trace};
     check_multi_hit(hits, hit_capacity, offsets);
     const RayBatch batch{reinterpret_cast<const unsigned char*>(rays),
                          ray_stride ? ray_stride : sizeof(kiwami_ray), nullptr, 0, count};
@@ -276,8 +313,9 @@ kiwami_result kiwami_multi_hit_fields(const kiwami_scene* scene, const kiwami_ra
                                       uint64_t* offsets, const kiwami_query* query) {
   return guarded(device_of(scene), [&] {
     const CommittedScene& committed = committed_of(scene);
-    const MultiHitRequest request{max_hits, hit_capacity, offsets,
-                                  read_query(query, committed, count).on_calling_thread};
+    const TraceRequest trace =
+        read_query(query, committed, count, static_cast<size_t>(hit_capacity));
+    const MultiHitRequest request{max_hits, hit_capacity, offsets, trace};
     check_multi_hit(hits, hit_capacity, offsets);
     const kiwami_ray_fields inputs = read_ray_fields(rays, count);
     const kiwami_hit_fields outputs =

@@ -133,6 +133,7 @@ void CommittedScene::number_triangles(const AttachedGeometry* geometries, size_t
     mesh_views_[used] = mesh.view(first_id, geometries[i].geometry_id);
     ranges_[used] = {first_id, geometries[i].geometry_id, mesh.mask()};
     if (mesh.mask() != ~uint32_t{0}) view_.has_masks = 1;
+    opacities_.set(memory_, used, count, mesh.opacity());
     ++used;
   }
   mesh_views_.shrink(used);
@@ -200,6 +201,7 @@ void CommittedScene::show_tree(const Bounds& bounds) {
   view_.range_count = static_cast<uint32_t>(ranges_.size());
   view_.meshes = mesh_views_.data();
   for (const TriangleMeshView& mesh : mesh_views_) view_.mesh_bytes += mesh.bytes();
+  view_.opacities = opacities_.views();
   for (int axis = 0; axis < 3; ++axis) {
     info_.bounds_min[axis] = bounds.lower[axis];
     info_.bounds_max[axis] = bounds.upper[axis];

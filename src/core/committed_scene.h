@@ -10,6 +10,7 @@
 #include "core/geometry.h"
 #include "core/memory.h"
 #include "core/object.h"
+#include "core/scene_opacities.h"
 #include "core/scene_parameters.h"
 #include "core/scene_parts.h"
 #include "kernels/kernel_table.h"
@@ -59,7 +60,7 @@ class CommittedScene : public Object<CommittedScene> {
   const SceneView& view() const { return view_; }
   const TraversalKernels& kernels() const { return kernels_; }
   /// Whether the scene is one that the plain kernels know.
-  bool is_plain() const { return view_.part_count == 0; }
+  bool is_plain() const { return view_.part_count == 0 && !view_.opacities; }
   const Parallel& parallel() const { return device_->parallel(); }
   bool validates_arguments() const { return device_->validates_arguments(); }
   const kiwami_scene_info& info() const { return info_; }
@@ -125,6 +126,7 @@ class CommittedScene : public Object<CommittedScene> {
   GeometryReferences references_;
   Array<TriangleMeshView> mesh_views_;
   Array<GeometryRange> ranges_;
+  SceneOpacities opacities_;
   WideTree tree_;
   SceneParts parts_;
   SceneView view_{};

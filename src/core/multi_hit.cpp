@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "core/field_access.h"
-#include "core/trace.h"
+#include "core/general_hits.h"
 #include "math/float_environment.h"
 
 namespace kiwami {
@@ -25,7 +25,7 @@ constexpr uint32_t kUsualLength = 16;
 /// The hits of one block of rays, until it is known where they go.
 class BlockHits {
  public:
-  /// Traces the rays for their hits.
+  /// Traces the rays for their hits by the plain kernels.
   void trace(const CommittedScene& scene, const RayBatch& batch, uint32_t max_hits) {
     const bool is_short = max_hits != 0 && max_hits <= kMostInserted;
     limit_ = is_short ? max_hits : kUsualLength;
@@ -39,11 +39,30 @@ class BlockHits {
     }
   }
 
+  /// Traces the rays for their hits by the general kernels; keeps the numbers alone if not told
+  /// otherwise.
+  void trace_generally(const CommittedScene& scene, const RayBatch& batch,
+                       const QueryOptions& options, uint32_t max_hits, bool keeps) {
+    limit_ = 0;
+    is_general_ = true;
+    make_room(scene.memory(), batch.count);
+    general_.clear();
+    for (size_t i = 0; i < batch.count; ++i) {
+      if (options.has_failed_callback()) {
+        counts_[i] = 0;
+        continue;
+      }
+      const RayBatch ray{batch.rays + i * batch.ray_stride, batch.ray_stride, nullptr, 0, 1};
+      counts_[i] = general_.trace(scene, ray, options.from(i), max_hits, keeps);
+    }
+  }
+
   /// Traces the rays for the numbers of their hits alone.
-  void count(const CommittedScene& scene, const RayBatch& batch, uint32_t max_hits) {
+  void count(const CommittedScene& scene, const RayBatch& batch, const QueryOptions& options,
+             uint32_t max_hits) {
     limit_ = 0;
     make_room(scene.memory(), batch.count);
-    scene.kernels().all_hits(scene.view(), counting(batch));
+    kAllHits.answer(scene, counting(batch), options);
     if (max_hits == 0) return;
     for (size_t i = 0; i < batch.count; ++i) counts_[i] = std::min(counts_[i], max_hits);
   }
@@ -51,21 +70,29 @@ class BlockHits {
   /// Of ray i of the block.
   uint32_t count_of(size_t i) const { return counts_[i]; }
 
-  /// Calls write(hits, count) for runs of the hits of the first ray_count rays, in order.
+  /// Calls write(hits, paths, count) for runs of the hits of the first ray_count rays, in order;
+  /// paths are null where no hit is in an instance.
   template <typename Write>
   void deliver(size_t ray_count, Write write) const {
+    if (is_general_) {
+      size_t count = 0;
+      for (size_t i = 0; i < ray_count; ++i) count += counts_[i];
+      write(general_.hits(), general_.paths(), count);
+      return;
+    }
+    const InstancePath* const no_paths = nullptr;
     kiwami_hit sorted[kMostInserted];
     const kiwami_hit* next_long = long_hits_.data();
     for (size_t i = 0; i < ray_count; ++i) {
       const uint32_t count = counts_[i];
       if (is_long_[i] != 0) {
-        write(next_long, count);
+        write(next_long, no_paths, count);
         next_long += count;
         continue;
       }
       const size_t first = i * limit_;
       for (uint32_t k = 0; k < count; ++k) sorted[k] = hits_[first + keys_[first + k].slot];
-      if (count) write(sorted, count);
+      if (count) write(sorted, no_paths, count);
     }
   }
 
@@ -111,6 +138,8 @@ class BlockHits {
     long_keys_ = std::move(keys);
   }
 
+  bool is_general_ = false;
+  GeneralHits general_;
   Array<kiwami_hit> hits_;  ///< limit_ slots a ray
   Array<HitKey> keys_;
   Array<kiwami_hit> long_hits_;  ///< of the rays with more, one after the other
@@ -132,7 +161,9 @@ class MultiHitTrace {
         hits_(hits),
         count_(count),
         request_(request),
-        is_alone_(is_alone(scene.parallel(), count, request.on_calling_thread)) {}
+        options_(watch_.watched(kernel_options(request.trace.options))),
+        is_general_(!scene.is_plain() || !options_.is_empty()),
+        is_alone_(is_alone(scene.parallel(), count, request.trace.on_calling_thread)) {}
 
   uint64_t run() {
     const size_t wave = kBlockSize * (is_alone_ ? 1 : kWaveBlocks);
@@ -146,6 +177,7 @@ class MultiHitTrace {
         const BlockHits& block = blocks_[(i - begin) / kBlockSize];
         request_.offsets[i + 1] = request_.offsets[i] + block.count_of((i - begin) % kBlockSize);
       }
+      watch_.check();
       if (is_full_) continue;
       for_blocks(begin, end, [&](size_t first, size_t last, const BlockHits& block) {
         deliver(first, last, block);
@@ -172,8 +204,12 @@ class MultiHitTrace {
   void trace_block(size_t begin, size_t end, BlockHits& block) {
     kiwami_ray scratch[kBlockSize];
     const RayBatch batch = rays_.block(begin, end, scratch);
-    if (is_full_) {
-      block.count(scene_, batch, request_.max_hits);
+    const QueryOptions options = options_.from(begin);
+    // A filter sees the hits in their order, also where they are only counted.
+    if (is_full_ && !options.filter) {
+      block.count(scene_, batch, options, request_.max_hits);
+    } else if (is_general_) {
+      block.trace_generally(scene_, batch, options, request_.max_hits, !is_full_);
     } else {
       block.trace(scene_, batch, request_.max_hits);
     }
@@ -182,13 +218,36 @@ class MultiHitTrace {
   /// Writes what fits of a block to its place.
   void deliver(size_t begin, size_t end, const BlockHits& block) const {
     uint64_t offset = request_.offsets[begin];
-    block.deliver(end - begin, [&](const kiwami_hit* hits, size_t count) {
-      if (offset < request_.hit_capacity) {
-        const uint64_t fitting = std::min<uint64_t>(count, request_.hit_capacity - offset);
-        hits_.write(static_cast<size_t>(offset), hits, static_cast<size_t>(fitting));
+    block.deliver(
+        end - begin, [&](const kiwami_hit* hits, const InstancePath* paths, size_t count) {
+          if (offset < request_.hit_capacity) {
+            const auto first = static_cast<size_t>(offset);
+            const auto fitting =
+                static_cast<size_t>(std::min<uint64_t>(count, request_.hit_capacity - offset));
+            hits_.write(first, hits, fitting);
+            if (request_.trace.options.instance_paths) write_paths(first, paths, fitting);
+          }
+          offset += count;
+        });
+  }
+
+  void write_paths(size_t first, const InstancePath* paths, size_t count) const {
+    const QueryOptions& options = request_.trace.options;
+    for (size_t i = 0; i < count; ++i) {
+      uint32_t numbers[KIWAMI_MAX_INSTANCE_DEPTH];
+      for (uint32_t level = 0; level < KIWAMI_MAX_INSTANCE_DEPTH; ++level) {
+        const bool is_there = paths && level < paths[i].depth;
+        numbers[level] = is_there ? paths[i].number[level] : KIWAMI_INVALID_ID;
       }
-      offset += count;
-    });
+      std::memcpy(options.instance_paths + (first + i) * options.instance_path_stride, numbers,
+                  sizeof numbers);
+    }
+  }
+
+  /// What kernels are told: they write no paths.
+  static QueryOptions kernel_options(QueryOptions options) {
+    options.instance_paths = nullptr;
+    return options;
   }
 
   const CommittedScene& scene_;
@@ -196,6 +255,9 @@ class MultiHitTrace {
   const Hits& hits_;
   size_t count_;
   const MultiHitRequest& request_;
+  CallbackWatch watch_;
+  QueryOptions options_;
+  bool is_general_;
   bool is_alone_;
   bool is_full_ = request_.hit_capacity == 0;  ///< what comes is only counted
   BlockHits blocks_[kWaveBlocks];

@@ -2,8 +2,7 @@
 // Several hits of each ray of a batch, one ray's after the other's.
 #pragma once
 
-#include "core/committed_scene.h"
-#include "kernels/kernel_table.h"
+#include "core/trace.h"
 
 namespace kiwami {
 
@@ -12,11 +11,11 @@ struct MultiHitRequest {
   uint32_t max_hits;      ///< of a ray, the nearest; 0: all
   uint64_t hit_capacity;  ///< hits beyond are counted, not written
   uint64_t* offsets;      ///< where each ray's hits begin, and where the last one's end
-  bool on_calling_thread;
+  TraceRequest trace;
 };
 
 /// Writes hits to an array of structs. Returns how many there are, whatever the capacity. Throws
-/// Error(OUT_OF_MEMORY) and what Parallel throws.
+/// Error(OUT_OF_MEMORY or CALLBACK) and what Parallel throws.
 uint64_t trace_multi_hit(const CommittedScene& scene, const RayBatch& rays, kiwami_hit* hits,
                          const MultiHitRequest& request);
 

@@ -56,8 +56,8 @@ void CallbackWatch::check() const {
   if (!has_failed()) return;
   throw Error(
       KIWAMI_ERROR_CALLBACK,
-      "a callback returned a negative number, or more hits than there is room for, expected "
-      "0 or more, and hits that fit");
+      "a callback returned a number that it may not, or more hits than there is room for, expected "
+      "one that its description names, and hits that fit");
 }
 
 void trace(const CommittedScene& scene, const Question& question, const RayBatch& batch,

@@ -4,6 +4,7 @@
 #include "bvh/triangle_source.h"
 #include "core/file_image.h"
 #include "core/geometry.h"
+#include "core/opacity_map.h"
 
 namespace kiwami {
 
@@ -36,6 +37,10 @@ class TriangleMesh final : public Geometry {
     return view;
   }
 
+  /// May be null. Scenes hold the one that they were committed with.
+  OpacityMap* opacity() const { return opacity_.get(); }
+  void set_opacity(Reference<OpacityMap> opacity) { opacity_ = std::move(opacity); }
+
  private:
   void end(Memory& memory) noexcept override { destroy_object(memory, this); }
   void copy_buffers();
@@ -48,6 +53,7 @@ class TriangleMesh final : public Geometry {
   Array<unsigned char> indices_;
   TriangleMeshView view_;
   bool shares_buffers_ = false;
+  Reference<OpacityMap> opacity_;
 };
 
 }  // namespace kiwami

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "kernels/answers-inl.h"
-#include "kernels/general-query-inl.h"
+#include "kernels/general-list-inl.h"
 #include "kernels/shape-leaf-inl.h"
 #include "kernels/user-leaf-inl.h"
 #include "wide/instance_part.h"
@@ -219,6 +219,7 @@ template <typename Query, int N, typename Probe>
 inline void trace_general(const SceneView& scene, const RayBatch& batch,
                           const QueryOptions& options, Probe& probe) {
   for (size_t i = 0; i < batch.count; ++i) {
+    if (options.has_failed_callback()) return;
     const UnalignedRay& ray = ray_of(batch, i);
     Query query;
     query.begin(options.from(i), ray);
@@ -241,11 +242,32 @@ void counting_general_kernel(const SceneView& scene, const RayBatch& batch,
   trace_general<Query, N>(scene, batch, options, probe);
 }
 
+/// See GeneralListKernel.
+template <int N>
+uint32_t general_nearest_hits(const SceneView& scene, const RayBatch& batch,
+                              const QueryOptions& options, const GeneralHitList& list) {
+  using Query = GeneralNearestHits<N>;
+  const UnalignedRay& ray = ray_of(batch, 0);
+  if (!is_traceable(ray)) return 0;
+  NoProbe probe;
+  Query query;
+  query.begin(options, ray, list);
+  // Nothing before the last hit is of interest, which may be one of several at its distance.
+  kiwami_ray rest;
+  __builtin_memcpy(&rest, &ray, sizeof rest);
+  if (list.after && list.after->hit.t > rest.tmin) rest.tmin = list.after->hit.t;
+  GeneralTraversal<Query, N, NoProbe>{query, probe}.visit_scene(scene, rest);
+  return query.list.count;
+}
+
 template <int N>
 inline GeneralKernels general_of_width() {
-  return {general_kernel<GeneralClosestHit<N>, N>, general_kernel<GeneralAnyHit<N>, N>,
-          general_kernel<GeneralAllHits<N>, N>, counting_general_kernel<GeneralClosestHit<N>, N>,
-          counting_general_kernel<GeneralAnyHit<N>, N>};
+  return {general_kernel<GeneralClosestHit<N>, N>,
+          general_kernel<GeneralAnyHit<N>, N>,
+          general_kernel<GeneralAllHits<N>, N>,
+          counting_general_kernel<GeneralClosestHit<N>, N>,
+          counting_general_kernel<GeneralAnyHit<N>, N>,
+          general_nearest_hits<N>};
 }
 
 }  // namespace

@@ -4,33 +4,13 @@
 #pragma once
 
 #include "kernels/hit-inl.h"
+#include "kernels/opacity-inl.h"
+#include "kernels/path-inl.h"
 #include "kernels/places-inl.h"
 
 namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
-
-/// The numbers of the instances that lead from the traced scene to the current one.
-struct InstancePath {
-  uint32_t depth;
-  uint32_t number[KIWAMI_MAX_INSTANCE_DEPTH];
-};
-
-/// By the first number that differs; a path that begins another is less.
-inline bool is_less(const InstancePath& a, const InstancePath& b) {
-  for (uint32_t i = 0; i < a.depth && i < b.depth; ++i) {
-    if (a.number[i] != b.number[i]) return a.number[i] < b.number[i];
-  }
-  return a.depth < b.depth;
-}
-
-inline bool is_equal(const InstancePath& a, const InstancePath& b) {
-  if (a.depth != b.depth) return false;
-  for (uint32_t i = 0; i < a.depth; ++i) {
-    if (a.number[i] != b.number[i]) return false;
-  }
-  return true;
-}
 
 /// Where a hit is, beside its distance.
 struct HitPlace {
@@ -45,16 +25,26 @@ inline bool is_before(const HitPlace& a, const HitPlace& b) {
                                         : a.primitive_id < b.primitive_id;
 }
 
+/// What becomes of a hit.
+enum class Verdict { kReject, kAccept, kStop };
+
 /// What general queries share. The scene and the ray are those of the current level; a distance is
 /// the same at each.
 template <int N>
 struct GeneralQuery : QueryBase<N, AnyLeaves<N>> {
   QueryOptions options;  ///< of this ray
   InstancePath path;
+  kiwami_exclusion excluded;
+  bool has_filter;
+  bool is_opaque;  ///< what is offered, so that no filter is asked
 
   void begin(const QueryOptions& of_ray, const UnalignedRay&) {
     options = of_ray;
     path.depth = 0;
+    has_filter = options.filter != nullptr;
+    is_opaque = false;
+    excluded.primitive_id = KIWAMI_INVALID_ID;
+    if (options.exclusions) __builtin_memcpy(&excluded, options.exclusions, sizeof excluded);
   }
 
   /// Goes on in a scene, with the ray as it is there. Nothing beyond reach is of interest.
@@ -62,6 +52,55 @@ struct GeneralQuery : QueryBase<N, AnyLeaves<N>> {
     this->scene = &level_scene;
     this->ray = &level_ray;
     this->best_bound = scaled_upper(level_ray, reach);
+  }
+
+  /// The number of the outermost instance.
+  uint32_t instance_id() const { return path.depth != 0 ? path.number[0] : KIWAMI_INVALID_ID; }
+
+  /// Whether the ray is not to meet this.
+  bool is_excluded(uint32_t geometry_id, uint32_t primitive_id) const {
+    if (primitive_id != excluded.primitive_id || geometry_id != excluded.geometry_id ||
+        primitive_id == KIWAMI_INVALID_ID) {
+      return false;
+    }
+    if (!options.exclusion_paths) return instance_id() == excluded.instance_id;
+    uint32_t numbers[KIWAMI_MAX_INSTANCE_DEPTH];
+    __builtin_memcpy(numbers, options.exclusion_paths, sizeof numbers);
+    for (uint32_t i = 0; i < KIWAMI_MAX_INSTANCE_DEPTH; ++i) {
+      if (numbers[i] != (i < path.depth ? path.number[i] : KIWAMI_INVALID_ID)) return false;
+    }
+    return true;
+  }
+
+  /// Has the filter judge a hit, of which describe(hit) fills in u, v and the normal. All is
+  /// accepted where there is no filter.
+  template <typename Describe>
+  Verdict ask_filter(float t, uint32_t geometry_id, uint32_t primitive_id, Describe describe) {
+    if (!options.filter || is_opaque) return Verdict::kAccept;
+    kiwami_filter_candidate candidate;
+    candidate.struct_size = sizeof candidate;
+    candidate.depth = path.depth;
+    candidate.ray = options.first_ray;
+    candidate.hit.t = t;
+    candidate.hit.primitive_id = primitive_id;
+    candidate.hit.geometry_id = geometry_id;
+    candidate.hit.instance_id = instance_id();
+    candidate.reserved = 0;
+    describe(candidate.hit);
+    for (uint32_t i = 0; i < KIWAMI_MAX_INSTANCE_DEPTH; ++i) {
+      candidate.instance_path[i] = i < path.depth ? path.number[i] : KIWAMI_INVALID_ID;
+    }
+    switch (options.filter(options.filter_user, &candidate)) {
+      case KIWAMI_FILTER_REJECT:
+        return Verdict::kReject;
+      case KIWAMI_FILTER_ACCEPT:
+        return Verdict::kAccept;
+      case KIWAMI_FILTER_ACCEPT_AND_STOP:
+        return Verdict::kStop;
+      default:
+        options.report_failed_callback();
+        return Verdict::kStop;
+    }
   }
 
   void deliver() const {}
@@ -72,10 +111,53 @@ inline float finite_tmax(const UnalignedRay& ray) {
   return ray.tmax < __FLT_MAX__ ? ray.tmax : __FLT_MAX__;
 }
 
+/// What the micromap says of a hit on a triangle of a scene that has some. Returns false where it
+/// is none; sets is_opaque where no filter is to be asked.
+template <int N>
+inline bool is_met(const SceneView& scene, const GeometryRange& range, const LeafBlock<N>& leaf,
+                   int lane, const Crossings<N>& crossings, bool has_filter, bool& is_opaque) {
+  const OpacityView& view = scene.opacities[&range - scene.ranges];
+  if (view.bits == 0) return true;
+  const auto u = static_cast<float>(crossings.v[lane] / crossings.sum[lane]);
+  const auto v = static_cast<float>(crossings.w[lane] / crossings.sum[lane]);
+  const uint32_t state = opacity_at(view, leaf.id[lane] - range.first_id, u, v);
+  is_opaque = state == KIWAMI_OPACITY_OPAQUE;
+  if (state == KIWAMI_OPACITY_UNKNOWN_TRANSPARENT) return has_filter;
+  return state != KIWAMI_OPACITY_TRANSPARENT;
+}
+
+/// Offers a query the triangles that the ray meets in a leaf. Returns true where that ends it.
+template <typename Query, int N, typename Probe>
+inline bool offer_triangles(Query& query, const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
+  return query.for_each_hit(leaf, lanes, probe, [&](int lane, const Crossings<N>& crossings) {
+    const float t = crossings.t[lane];
+    if (t > query.reach()) return false;
+    const SceneView& scene = *query.scene;
+    const GeometryRange& range = range_of(scene, leaf.id[lane]);
+    bool is_opaque = false;
+    if (scene.opacities &&
+        !is_met(scene, range, leaf, lane, crossings, query.has_filter, is_opaque)) {
+      return false;
+    }
+    // What is counted, and what a filter is asked about, comes once.
+    if ((Query::kCounts || (query.options.filter && !is_opaque)) &&
+        scene.tree.has_duplicates != 0 && !is_first_place(scene, *query.ray, leaf, lane, t)) {
+      return false;
+    }
+    query.is_opaque = is_opaque;
+    const bool is_done =
+        query.accept(t, range.geometry_id, leaf.id[lane] - range.first_id,
+                     [&](kiwami_hit& hit) { describe_triangle(leaf, lane, crossings, hit); });
+    query.is_opaque = false;
+    return is_done;
+  });
+}
+
 /// The least (t, path, geometry, primitive).
 template <int N>
 struct GeneralClosestHit : GeneralQuery<N> {
   static constexpr bool kOrdered = true;
+  static constexpr bool kCounts = false;
   using Answer = kiwami_hit;
 
   kiwami_hit best;
@@ -102,25 +184,21 @@ struct GeneralClosestHit : GeneralQuery<N> {
   template <typename Describe>
   bool accept(float t, uint32_t geometry_id, uint32_t primitive_id, Describe describe) {
     if (!is_nearer(t, geometry_id, primitive_id)) return false;
+    if (this->is_excluded(geometry_id, primitive_id)) return false;
+    const Verdict verdict = this->ask_filter(t, geometry_id, primitive_id, describe);
+    if (verdict == Verdict::kReject) return false;
     best.t = t;
     best.geometry_id = geometry_id;
     best.primitive_id = primitive_id;
     best_path = this->path;
     this->best_bound = scaled_upper(*this->ray, t);
     describe(best);
-    return false;
+    return verdict == Verdict::kStop;
   }
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
-    this->for_each_hit(leaf, lanes, probe, [&](int lane, const Crossings<N>& crossings) {
-      const float t = crossings.t[lane];
-      if (t > best.t) return false;
-      const GeometryRange& range = range_of(*this->scene, leaf.id[lane]);
-      return accept(t, range.geometry_id, leaf.id[lane] - range.first_id,
-                    [&](kiwami_hit& hit) { describe_triangle(leaf, lane, crossings, hit); });
-    });
-    return false;
+    return offer_triangles(*this, leaf, lanes, probe);
   }
 
   kiwami_hit answer() const {
@@ -142,33 +220,44 @@ struct GeneralClosestHit : GeneralQuery<N> {
   }
 };
 
-/// Whether there is a hit: ends at the first.
+/// Queries of the whole ray.
 template <int N>
-struct GeneralAnyHit : GeneralQuery<N> {
+struct GeneralWholeRay : GeneralQuery<N> {
   static constexpr bool kOrdered = false;
-  using Answer = uint8_t;
 
   float tmax;
-  bool is_hit;
 
   void begin(const QueryOptions& of_ray, const UnalignedRay& given) {
     GeneralQuery<N>::begin(of_ray, given);
     tmax = finite_tmax(given);
-    is_hit = false;
   }
 
   float reach() const { return tmax; }
+};
+
+/// Whether there is a hit: ends at the first.
+template <int N>
+struct GeneralAnyHit : GeneralWholeRay<N> {
+  static constexpr bool kCounts = false;
+  using Answer = uint8_t;
+
+  bool is_hit;
+
+  void begin(const QueryOptions& of_ray, const UnalignedRay& given) {
+    GeneralWholeRay<N>::begin(of_ray, given);
+    is_hit = false;
+  }
 
   template <typename Describe>
-  bool accept(float, uint32_t, uint32_t, Describe) {
-    is_hit = true;
-    return true;
+  bool accept(float t, uint32_t geometry_id, uint32_t primitive_id, Describe describe) {
+    if (this->is_excluded(geometry_id, primitive_id)) return false;
+    is_hit = this->ask_filter(t, geometry_id, primitive_id, describe) != Verdict::kReject;
+    return is_hit;
   }
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
-    is_hit = this->for_each_hit(leaf, lanes, probe, [](int, const Crossings<N>&) { return true; });
-    return is_hit;
+    return offer_triangles(*this, leaf, lanes, probe);
   }
 
   uint8_t answer() const { return is_hit ? 1 : 0; }
@@ -176,38 +265,28 @@ struct GeneralAnyHit : GeneralQuery<N> {
 
 /// How many hits there are.
 template <int N>
-struct GeneralAllHits : GeneralQuery<N> {
-  static constexpr bool kOrdered = false;
+struct GeneralAllHits : GeneralWholeRay<N> {
+  static constexpr bool kCounts = true;
   using Answer = uint32_t;
 
-  float tmax;
   uint32_t count;
 
   void begin(const QueryOptions& of_ray, const UnalignedRay& given) {
-    GeneralQuery<N>::begin(of_ray, given);
-    tmax = finite_tmax(given);
+    GeneralWholeRay<N>::begin(of_ray, given);
     count = 0;
   }
 
-  float reach() const { return tmax; }
-
   template <typename Describe>
-  bool accept(float, uint32_t, uint32_t, Describe) {
-    ++count;
-    return false;
+  bool accept(float t, uint32_t geometry_id, uint32_t primitive_id, Describe describe) {
+    if (this->is_excluded(geometry_id, primitive_id)) return false;
+    const Verdict verdict = this->ask_filter(t, geometry_id, primitive_id, describe);
+    if (verdict != Verdict::kReject) ++count;
+    return verdict == Verdict::kStop;
   }
 
   template <typename Probe>
   bool visit_leaf(const LeafBlock<N>& leaf, uint32_t lanes, Probe& probe) {
-    this->for_each_hit(leaf, lanes, probe, [&](int lane, const Crossings<N>& crossings) {
-      const SceneView& view = *this->scene;
-      if (view.tree.has_duplicates == 0 ||
-          is_first_place(view, *this->ray, leaf, lane, crossings.t[lane])) {
-        ++count;
-      }
-      return false;
-    });
-    return false;
+    return offer_triangles(*this, leaf, lanes, probe);
   }
 
   uint32_t answer() const { return count; }

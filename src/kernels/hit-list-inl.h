@@ -8,18 +8,11 @@
 // visits, and a hit that is met twice (in trees with duplicates) is told by being equal.
 #pragma once
 
-#include "kernels/kernel_table.h"
+#include "kernels/path-inl.h"
 
 namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
-
-/// Of two hits at one distance: below 0 where a comes first, 0 where they are the same.
-inline int compare_numbers(const kiwami_hit& a, const kiwami_hit& b) {
-  if (a.geometry_id != b.geometry_id) return a.geometry_id < b.geometry_id ? -1 : 1;
-  if (a.primitive_id != b.primitive_id) return a.primitive_id < b.primitive_id ? -1 : 1;
-  return 0;
-}
 
 /// Whether a comes before b, by (t, geometry, primitive).
 inline bool is_before(const kiwami_hit* hits, HitKey a, HitKey b) {
@@ -77,18 +70,12 @@ inline void sort_keys(const kiwami_hit* hits, HitKey* keys, size_t count) {
 }
 
 /// The nearest hits up to a limit, sorted at any time. They lie in the caller's slots.
+template <typename Hit>
 struct NearestHits {
-  kiwami_hit* hits;
+  Hit* hits;
   HitKey* keys;
   uint32_t limit;
   uint32_t count;
-
-  void begin(const HitLists& lists, size_t ray) {
-    hits = lists.hits + ray * lists.limit;
-    keys = lists.keys + ray * lists.limit;
-    limit = lists.limit;
-    count = 0;
-  }
 
   bool is_full() const { return count == limit; }
   /// The distance beyond which nothing is added; only of a full list.
@@ -99,7 +86,7 @@ struct NearestHits {
   template <typename Make>
   bool add(float t, Make make) {
     if (is_full() && t > farthest()) return true;
-    const kiwami_hit hit = make();
+    const Hit hit = make();
     uint32_t place = count;
     for (; place > 0 && t <= keys[place - 1].t; --place) {
       if (t < keys[place - 1].t) continue;

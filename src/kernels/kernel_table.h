@@ -34,20 +34,33 @@ struct TraversalCounters {
 /// What a query asks beyond its rays; plain kernels know nothing of it. Element i of a strided
 /// field belongs to ray i of the batch.
 struct QueryOptions {
-  unsigned char* instance_paths;  ///< KIWAMI_MAX_INSTANCE_DEPTH uint32_t a ray, or nullptr
-  size_t instance_path_stride;
+  unsigned char* instance_paths = nullptr;  ///< KIWAMI_MAX_INSTANCE_DEPTH uint32_t a ray, or null
+  size_t instance_path_stride = 0;
+  const unsigned char* exclusions = nullptr;  ///< kiwami_exclusion a ray, or null
+  size_t exclusion_stride = 0;
+  const unsigned char* exclusion_paths = nullptr;  ///< as instance_paths, or null
+  size_t exclusion_path_stride = 0;
+  kiwami_filter_function filter = nullptr;
+  void* filter_user = nullptr;
+  uint64_t first_ray = 0;               ///< the number of ray 0 in the call
   uint32_t* failed_callback = nullptr;  ///< set to 1 where a callback fails; shared by threads
 
   void report_failed_callback() const {
     if (failed_callback) __atomic_store_n(failed_callback, 1u, __ATOMIC_RELAXED);
   }
+  bool has_failed_callback() const {
+    return failed_callback && __atomic_load_n(failed_callback, __ATOMIC_RELAXED) != 0;
+  }
 
-  bool is_empty() const { return instance_paths == nullptr; }
+  bool is_empty() const { return !instance_paths && !exclusions && !filter; }
 
   /// The options of the rays from first on.
   QueryOptions from(size_t first) const {
     QueryOptions rest = *this;
+    rest.first_ray += first;
     if (rest.instance_paths) rest.instance_paths += first * instance_path_stride;
+    if (rest.exclusions) rest.exclusions += first * exclusion_stride;
+    if (rest.exclusion_paths) rest.exclusion_paths += first * exclusion_path_stride;
     return rest;
   }
 };
@@ -91,6 +104,31 @@ struct MultiHitKernels {
   ManyHitsKernel many = nullptr;
 };
 
+/// The numbers of the instances that lead from the traced scene to another.
+struct InstancePath {
+  uint32_t depth;
+  uint32_t number[KIWAMI_MAX_INSTANCE_DEPTH];
+};
+
+/// A hit in a list of a general kernel.
+struct GeneralHit {
+  kiwami_hit hit;
+  InstancePath path;
+  uint32_t is_asked;  ///< 1: the filter, if there is one, decides whether it counts
+};
+
+/// A list of the nearest hits of one ray. Its keys are sorted, and say where each hit is.
+struct GeneralHitList {
+  GeneralHit* hits;
+  HitKey* keys;
+  uint32_t limit;           ///< at most this many
+  const GeneralHit* after;  ///< hits up to this one, included, are left out; nullptr: none
+};
+/// Returns the number of hits in the list, each being there once. No filter is called: the hits are
+/// those that may count. The rays of the batch are one; its answers are not used.
+using GeneralListKernel = uint32_t (*)(const SceneView& scene, const RayBatch& batch,
+                                       const QueryOptions& options, const GeneralHitList& list);
+
 using GeneralKernel = void (*)(const SceneView& scene, const RayBatch& batch,
                                const QueryOptions& options);
 using CountingGeneralKernel = void (*)(const SceneView& scene, const RayBatch& batch,
@@ -103,6 +141,7 @@ struct GeneralKernels {
   GeneralKernel all_hits;
   CountingGeneralKernel closest_hit_counted;
   CountingGeneralKernel any_hit_counted;
+  GeneralListKernel nearest_hits;
 };
 
 /// The kernels of one node width; all null where the ISA has none. Those that are not in general

@@ -57,7 +57,12 @@ struct MultiHitQuery : QueryBase<N, Leaves> {
 };
 
 template <int N, typename Leaves>
-using NearestHitsQuery = MultiHitQuery<N, Leaves, NearestHits>;
+using NearestHitsQuery = MultiHitQuery<N, Leaves, NearestHits<kiwami_hit>>;
+
+/// The empty list of a ray, in its slots.
+inline NearestHits<kiwami_hit> list_of(const HitLists& lists, size_t ray) {
+  return {lists.hits + ray * lists.limit, lists.keys + ray * lists.limit, lists.limit, 0};
+}
 
 /// One batch of rays on its way to lists of its nearest hits.
 template <int N, typename Leaves>
@@ -78,7 +83,7 @@ struct NearestHitsTrace {
       set_up(ray, scene.tree, ready);
       NearestHitsQuery<N, Leaves> query;
       query.begin(scene, ready);
-      query.list.begin(lists, i);
+      query.list = list_of(lists, i);
       traverse<N>(scene.tree, {scene.tree.root, ready.nearest}, ready, query, probe);
       write_answer(batch, i, query.answer());
     }
@@ -88,13 +93,13 @@ struct NearestHitsTrace {
   /// part soon: what ends a single ray early, its nearest hit, does not end these. Most lists are
   /// never full, so children are not visited in order.
   void trace_stream(StreamWaiting<N>& waiting) const {
-    using Query = MultiHitQuery<N, Leaves, NearestHits, false>;
+    using Query = MultiHitQuery<N, Leaves, NearestHits<kiwami_hit>, false>;
     const int size = waiting.count < kStreamSize ? waiting.count : kStreamSize;
     if (size == 0) return;
     Query queries[kStreamSize];
     for (int i = 0; i < size; ++i) {
       queries[i].begin(scene, waiting.rays[i]);
-      queries[i].list.begin(lists, waiting.index[i]);
+      queries[i].list = list_of(lists, waiting.index[i]);
     }
     StreamSlabs<N> slabs;
     set_up_stream<N>(waiting.rays, size, slabs);

@@ -128,6 +128,15 @@ struct ScenePart {
   float far_origin, far_origin_margin;
 };
 
+/// The opacity micromaps of a mesh. Plain data.
+struct OpacityView {
+  const unsigned char* maps;
+  size_t map_bytes;         ///< of one
+  const uint32_t* indices;  ///< the map of each triangle; nullptr: that of its number
+  uint32_t level;
+  uint32_t bits;  ///< of a micro-triangle; 0: the mesh has no maps
+};
+
 struct TriangleMeshView;
 
 /// What a kernel needs of a scene.
@@ -140,6 +149,7 @@ struct SceneView {
   const ScenePart* parts;                    ///< everything but the static triangles; none is empty
   const TriangleMeshView* meshes = nullptr;  ///< of each range, for leaves of ids alone
   uint64_t mesh_bytes = 0;                   ///< what rays may read of their buffers
+  const OpacityView* opacities = nullptr;    ///< of each range; nullptr: there are none
 };
 
 }  // namespace kiwami

@@ -252,7 +252,7 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_device_info, memory_peak_bytes, 40);
   FIELD(kiwami_device_info, memory_limit, 48);
 
-  SIZE(kiwami_scene_info, 152);
+  SIZE(kiwami_scene_info, 176);
   FIELD(kiwami_scene_info, struct_size, 0);
   FIELD(kiwami_scene_info, bvh_width, 4);
   FIELD(kiwami_scene_info, leaf_width, 8);
@@ -278,7 +278,26 @@ static void check_infos_and_query(void) {
   FIELD(kiwami_scene_info, instance_depth, 168);
   FIELD(kiwami_scene_info, reserved, 172);
 
-  SIZE(kiwami_query, 24);
+  SIZE(kiwami_exclusion, 12);
+  FIELD(kiwami_exclusion, primitive_id, 0);
+  FIELD(kiwami_exclusion, geometry_id, 4);
+  FIELD(kiwami_exclusion, instance_id, 8);
+
+  SIZE(kiwami_filter_candidate, 88);
+  FIELD(kiwami_filter_candidate, struct_size, 0);
+  FIELD(kiwami_filter_candidate, depth, 4);
+  FIELD(kiwami_filter_candidate, ray, 8);
+  FIELD(kiwami_filter_candidate, hit, 16);
+  FIELD(kiwami_filter_candidate, reserved, 52);
+  FIELD(kiwami_filter_candidate, instance_path, 56);
+
+  SIZE(kiwami_query, 72);
+  FIELD(kiwami_query, exclusions, 24);
+  FIELD(kiwami_query, exclusion_stride, 32);
+  FIELD(kiwami_query, exclusion_paths, 40);
+  FIELD(kiwami_query, exclusion_path_stride, 48);
+  FIELD(kiwami_query, filter, 56);
+  FIELD(kiwami_query, filter_user, 64);
   FIELD(kiwami_query, struct_size, 0);
   FIELD(kiwami_query, flags, 4);
   FIELD(kiwami_query, instance_paths, 8);
@@ -476,6 +495,19 @@ static void check_light_descs(void) {
   FIELD(kiwami_light_instance_desc, link_mask, 64);
 }
 
+static void check_opacity_desc(void) {
+  SIZE(kiwami_opacity_desc, 56);
+  FIELD(kiwami_opacity_desc, struct_size, 0);
+  FIELD(kiwami_opacity_desc, format, 4);
+  FIELD(kiwami_opacity_desc, level, 8);
+  FIELD(kiwami_opacity_desc, reserved, 12);
+  FIELD(kiwami_opacity_desc, maps, 16);
+  FIELD(kiwami_opacity_desc, map_stride, 24);
+  FIELD(kiwami_opacity_desc, map_count, 32);
+  FIELD(kiwami_opacity_desc, indices, 40);
+  FIELD(kiwami_opacity_desc, index_stride, 48);
+}
+
 static void check_interpolation(void) {
   SIZE(kiwami_interpolation, 184);
   FIELD(kiwami_interpolation, struct_size, 0);
@@ -516,6 +548,12 @@ static void check_numbers(void) {
   expect("KIWAMI_LOAD_TRUSTED", KIWAMI_LOAD_TRUSTED, 2);
   expect("KIWAMI_FILE_BVH", KIWAMI_FILE_BVH, 2);
   expect("KIWAMI_FIT_NONE", KIWAMI_FIT_NONE, 2);
+  expect("KIWAMI_FILTER_ACCEPT", KIWAMI_FILTER_ACCEPT, 1);
+  expect("KIWAMI_FILTER_ACCEPT_AND_STOP", KIWAMI_FILTER_ACCEPT_AND_STOP, 2);
+  expect("KIWAMI_OPACITY_OPAQUE", KIWAMI_OPACITY_OPAQUE, 1);
+  expect("KIWAMI_OPACITY_UNKNOWN_TRANSPARENT", KIWAMI_OPACITY_UNKNOWN_TRANSPARENT, 2);
+  expect("KIWAMI_OPACITY_UNKNOWN_OPAQUE", KIWAMI_OPACITY_UNKNOWN_OPAQUE, 3);
+  expect("KIWAMI_OPACITY_4_STATES", KIWAMI_OPACITY_4_STATES, 2);
   expect("KIWAMI_ISA_AVX512", KIWAMI_ISA_AVX512, 4);
   expect("KIWAMI_PARAMETER_BVH_WIDTH", KIWAMI_PARAMETER_BVH_WIDTH, 1);
   expect("KIWAMI_PARAMETER_MERGE_LEAVES", KIWAMI_PARAMETER_MERGE_LEAVES, 2);
@@ -562,6 +600,7 @@ int main(void) {
     check_bvh_desc();
     check_light_descs();
     check_interpolation();
+    check_opacity_desc();
   }
   check_infos_and_query();
   check_bvh();

@@ -248,6 +248,19 @@ TEST(Bench, MakesATableOfQueries) {
   }
 }
 
+TEST(Bench, MeasuresFiltersAndMicromaps) {
+  const Json rows = bench_rows({"room:20000", "--queries", "filter,micromap", "--rays",
+                                "primary,random", "--clock", "processor", "--threads", "1"});
+  ASSERT_EQ(rows.size(), 4u);
+  for (const Json& row : rows) {
+    expect_positive(row, {"mrays", "hits_per_ray"});
+    // Where rounding puts a point into another micro-triangle, or a ray on an edge.
+    if (row.contains("embree_mrays")) {
+      EXPECT_LT(row.at("embree_disagreements"), 20) << row;
+    }
+  }
+}
+
 TEST(Bench, TheCameraDecidesThePrimaryRays) {
   const auto hash = [](const std::vector<std::string>& view) {
     std::vector<std::string> arguments = {"terrain:20", "--rays", "primary", "--threads", "1",

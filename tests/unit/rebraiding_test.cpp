@@ -104,7 +104,9 @@ TEST_F(RebraidingTest, ReferencesCoverAllOnceWithinTheBudget) {
       const Array<BraidReference> references = rebraid(rows.roots(memory_), rows, config, memory_);
       expect_complete(rows, references);
       EXPECT_LE(references.size(), count + static_cast<size_t>(budget * count + 0.5));
-      if (count == 700 && budget == 0.5) EXPECT_GT(references.size(), 1000u);
+      if (count == 700 && budget == 0.5) {
+        EXPECT_GT(references.size(), 1000u);
+      }
     }
   }
 }

@@ -13,6 +13,7 @@
 #include "measure/bench_rays.h"
 #include "measure/contest.h"
 #include "measure/embree_queries.h"
+#include "measure/leaf_mask.h"
 
 namespace kiwami::tools {
 namespace {
@@ -63,8 +64,16 @@ class QueryBench {
   const std::vector<BenchRays>& rays() const { return rays_; }
 
   QueryRow multi_hit(const BenchRays& rays, uint32_t max_hits) const;
+  /// A filter that lets every other triangle go.
+  QueryRow filter(const BenchRays& rays) const;
+  /// Leaves in place of all triangles: micromaps here, a filter that reads the same map there.
+  QueryRow micromap(const BenchRays& rays);
 
  private:
+  QueryRow closest_row(const BenchRays& rays, const char* query,
+                       const std::function<void(std::span<kiwami_hit>)>& trace, AcceptsHit accepts,
+                       const void* user) const;
+
   template <typename OwnHits, typename TheirHits>
   bool agree(const OwnHits& own, const TheirHits& theirs) const {
     if (own.size() != theirs.size()) return false;
@@ -95,6 +104,7 @@ class QueryBench {
   SceneFile file_;
   Device device_;
   BuiltScene scene_;
+  std::unique_ptr<BuiltScene> masked_;  ///< with leaves
   std::unique_ptr<EmbreeQueries> embree_;
   std::vector<BenchRays> rays_;
   float least_distance_ = 0.0f;
@@ -150,20 +160,92 @@ QueryRow QueryBench::multi_hit(const BenchRays& rays, uint32_t max_hits) const {
   return row;
 }
 
+/// Closest hits under a condition, which Embree checks by a filter.
+QueryRow QueryBench::closest_row(const BenchRays& rays, const char* query,
+                                 const std::function<void(std::span<kiwami_hit>)>& trace,
+                                 AcceptsHit accepts, const void* user) const {
+  const std::span<const kiwami_ray> all = rays.set.rays;
+  std::vector<kiwami_hit> own(all.size());
+  std::vector<float> theirs(all.size());
+  std::vector<Contender> contenders = {{[] {}, [&] { trace(own); }, [] {}}};
+  QueryRow row = row_of(rays, query);
+  row.max_hits = 1;
+  if (embree_) {
+    contenders.push_back(
+        {[] {}, [&] { embree_->filtered_hits(all, accepts, user, theirs); }, [] {}});
+    row.rivals = {{"Embree", 0.0, 0.0, 0}};
+  }
+  for (const Contender& contender : contenders) contender.run();
+  take_times(row, interleaved_seconds(contenders, settings_.rounds, settings_.clock), all.size());
+  uint64_t hits = 0;
+  for (size_t i = 0; i < all.size(); ++i) {
+    hits += own[i].primitive_id != KIWAMI_INVALID_ID;
+    if (!embree_) continue;
+    const float a = own[i].t, b = theirs[i];
+    const bool agree = a == b || std::abs(a - b) <= 1e-3f * std::min(a, b) + least_distance_;
+    row.rivals[0].disagreements += !agree;
+  }
+  row.hits = static_cast<double>(hits) / static_cast<double>(all.size());
+  if (embree_ && static_cast<double>(row.rivals[0].disagreements) >
+                     kMostDisagreements * static_cast<double>(all.size())) {
+    row.wrong = format("%llu of %zu answers contradict those of Embree",
+                       static_cast<unsigned long long>(row.rivals[0].disagreements), all.size());
+  }
+  return row;
+}
+
+bool is_kept(uint32_t primitive_id) { return (primitive_id & 1u) == 0; }
+bool accept_kept(uint32_t, uint32_t primitive_id, float, float, const void*) {
+  return is_kept(primitive_id);
+}
+int32_t filter_kept(void*, const kiwami_filter_candidate* candidate) {
+  return is_kept(candidate->hit.primitive_id) ? KIWAMI_FILTER_ACCEPT : KIWAMI_FILTER_REJECT;
+}
+
+QueryRow QueryBench::filter(const BenchRays& rays) const {
+  const auto trace = [&](std::span<kiwami_hit> hits) {
+    scene_.filtered_hits(rays.set.rays, filter_kept, nullptr, hits);
+  };
+  return closest_row(rays, "filter", trace, accept_kept, nullptr);
+}
+
+constexpr uint32_t kLeafLevel = 5;
+
+bool accept_leaf(uint32_t, uint32_t, float u, float v, const void* user) {
+  const auto* const map = static_cast<const unsigned char*>(user);
+  const uint32_t number = kiwami_opacity_micro_triangle(u, v, kLeafLevel);
+  return ((map[number / 8] >> (number % 8)) & 1u) != 0;
+}
+
+QueryRow QueryBench::micromap(const BenchRays& rays) {
+  if (!masked_) {
+    BuildOptions options = settings_.build;
+    options.leaf_mask_level = kLeafLevel;
+    masked_ = std::make_unique<BuiltScene>(device_, file_, options);
+  }
+  const std::vector<unsigned char> map = leaf_map(kLeafLevel);
+  const auto trace = [&](std::span<kiwami_hit> hits) {
+    masked_->closest_hits(rays.set.rays, hits);
+  };
+  return closest_row(rays, "micromap", trace, accept_leaf, map.data());
+}
+
 }  // namespace
 
 const std::vector<std::string>& query_names() {
-  static const std::vector<std::string> kNames = {"multi_hit"};
+  static const std::vector<std::string> kNames = {"multi_hit", "filter", "micromap"};
   return kNames;
 }
 
 void run_queries(const std::string& scene, const std::vector<std::string>& names, uint32_t max_hits,
                  const BenchSettings& settings,
                  const std::function<void(const QueryRow&)>& listener) {
-  const QueryBench bench(scene, settings);
+  QueryBench bench(scene, settings);
   for (const std::string& name : names) {
     for (const BenchRays& rays : bench.rays()) {
       if (name == "multi_hit") listener(bench.multi_hit(rays, max_hits));
+      if (name == "filter") listener(bench.filter(rays));
+      if (name == "micromap") listener(bench.micromap(rays));
     }
   }
 }

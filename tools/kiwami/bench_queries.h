@@ -34,7 +34,7 @@ struct QueryRow {
   std::string wrong;  ///< what is wrong with the answers, or ""
 };
 
-/// "multi_hit".
+/// "multi_hit", "filter" and "micromap".
 const std::vector<std::string>& query_names();
 
 /// Measures queries of these names over a scene, next to what they replace: stepping from hit to

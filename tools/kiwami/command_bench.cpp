@@ -122,6 +122,7 @@ BenchSettings make_settings(const BenchOptions& options) {
   for (const std::string& isa : split("--isa", options.isas)) {
     settings.isas.push_back(isa_of_name(isa));
   }
+  settings.instanced = options.instanced;
   settings.build = options.pipeline.build_options(options.bvh_width);
   for (const std::string& text : options.parameters) {
     settings.build.parameters.push_back(parse_parameter(text));

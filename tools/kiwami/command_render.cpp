@@ -28,6 +28,7 @@ struct RenderOptions {
   ViewOptions view;
   TraceOptions trace;
   PipelineOptions pipeline;
+  uint32_t leaf_mask_level = 0;
 };
 
 RenderMode parse_mode(const std::string& name) {
@@ -69,8 +70,9 @@ std::unique_ptr<BuiltScene> make_scene(const RenderOptions& options, const Devic
   if (is_saved_scene(options.scene)) {
     return std::make_unique<BuiltScene>(device, options.scene, KIWAMI_LOAD_MAP);
   }
-  return std::make_unique<BuiltScene>(device, file,
-                                      options.pipeline.build_options(options.trace.bvh_width));
+  BuildOptions build = options.pipeline.build_options(options.trace.bvh_width);
+  build.leaf_mask_level = options.leaf_mask_level;
+  return std::make_unique<BuiltScene>(device, file, build);
 }
 
 void run_render(const RenderOptions& options) {
@@ -134,6 +136,12 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->check(whole_number(1, 8))
       ->capture_default_str();
   add_instanced_option(*command, options->instanced);
+  command
+      ->add_option("--leaf-mask", options->leaf_mask_level,
+                   "Put a leaf in place of each triangle, by opacity micromaps of this level, 1 to "
+                   "6; 0: none")
+      ->check(whole_number(0, 6))
+      ->capture_default_str();
   add_view_options(*command, options->view);
   add_trace_options(*command, options->trace);
   add_pipeline_options(*command, options->pipeline);

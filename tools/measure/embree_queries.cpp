@@ -2,6 +2,7 @@
 #include "measure/embree_queries.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "measure/embree_scene.h"
 
@@ -50,6 +51,21 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
+/// The same for a filter that judges hits.
+struct Judgement {
+  RTCIntersectContext context;
+  AcceptsHit accepts;
+  const void* user;
+};
+
+void judge(const RTCFilterFunctionNArguments* arguments) {
+  const auto& judgement = *reinterpret_cast<const Judgement*>(arguments->context);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+  if (!judgement.accepts(hit.geomID, hit.primID, hit.u, hit.v, judgement.user)) {
+    arguments->valid[0] = 0;
+  }
+}
+
 class Embree3Queries final : public EmbreeQueries {
  public:
   Embree3Queries(const SceneFile& file, uint32_t isa)
@@ -76,6 +92,25 @@ class Embree3Queries final : public EmbreeQueries {
                   is_nearer);
       }
       lists.offsets.push_back(lists.hits.size());
+    }
+  }
+
+  void filtered_hits(std::span<const kiwami_ray> rays, AcceptsHit accepts, const void* user,
+                     std::span<float> distances) const override {
+    Judgement judgement;
+    rtcInitIntersectContext(&judgement.context);
+    judgement.context.filter = judge;
+    judgement.accepts = accepts;
+    judgement.user = user;
+    for (size_t i = 0; i < rays.size(); ++i) {
+      RTCRayHit query;
+      query.ray = to_embree(rays[i]);
+      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_.get(), &judgement.context, &query);
+      distances[i] = query.hit.geomID == RTC_INVALID_GEOMETRY_ID
+                         ? std::numeric_limits<float>::infinity()
+                         : query.ray.tfar;
     }
   }
 

@@ -18,6 +18,10 @@ struct HitLists {
   std::vector<kiwami_hit> hits;
 };
 
+/// Whether a hit on a triangle counts.
+using AcceptsHit = bool (*)(uint32_t geometry_id, uint32_t primitive_id, float u, float v,
+                            const void* user);
+
 /// What Embree does by filter functions, on one thread, one ray a call.
 class EmbreeQueries {
  public:
@@ -29,6 +33,9 @@ class EmbreeQueries {
   /// draws the ray's end nearer.
   virtual void multi_hits(std::span<const kiwami_ray> rays, uint32_t max_hits,
                           HitLists& lists) const = 0;
+  /// The nearest hits that count.
+  virtual void filtered_hits(std::span<const kiwami_ray> rays, AcceptsHit accepts, const void* user,
+                             std::span<float> distances) const = 0;
 };
 
 }  // namespace kiwami::tools

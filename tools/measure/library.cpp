@@ -5,6 +5,8 @@
 #include <charconv>
 #include <optional>
 
+#include "measure/leaf_mask.h"
+
 namespace kiwami::tools {
 namespace {
 
@@ -142,6 +144,20 @@ void move_to_world(const std::vector<Instance>& instances, kiwami_hit& hit) {
   hit.instance_id = KIWAMI_INVALID_ID;
 }
 
+/// Puts a leaf in place of each triangle.
+void set_leaf_mask(kiwami_device* device, kiwami_geometry* geometry, const Mesh& mesh,
+                   uint32_t level) {
+  const std::vector<unsigned char> map = leaf_map(level);
+  const std::vector<uint32_t> indices(mesh.triangle_count(), 0);
+  kiwami_opacity_desc opacity;
+  check(kiwami_opacity_desc_init(&opacity, sizeof opacity), device);
+  opacity.level = level;
+  opacity.maps = map.data();
+  opacity.map_count = 1;
+  opacity.indices = indices.data();
+  check(kiwami_triangle_mesh_set_opacity(geometry, &opacity), device);
+}
+
 /// Holds the reference to a scene's tree.
 class Tree {
  public:
@@ -213,15 +229,17 @@ void BuiltScene::release() {
 
 void BuiltScene::build(kiwami_device* device, const SceneFile& file, const BuildOptions& options) {
   scene_ = make_scene(device, options);
-  for (const Mesh& mesh : file.meshes) attach(device, scene_, mesh);
+  for (const Mesh& mesh : file.meshes) attach(device, scene_, mesh, options.leaf_mask_level);
   info_ = commit(scene_);
 }
 
-void BuiltScene::attach(kiwami_device* device, kiwami_scene* scene, const Mesh& mesh) {
+void BuiltScene::attach(kiwami_device* device, kiwami_scene* scene, const Mesh& mesh,
+                        uint32_t leaf_mask_level) {
   const kiwami_triangle_mesh_desc desc = desc_of(mesh);
   kiwami_geometry* geometry = nullptr;
   check(kiwami_triangle_mesh_create(device, &desc, &geometry), device);
   geometries_.push_back(geometry);
+  if (leaf_mask_level != 0) set_leaf_mask(device, geometry, mesh, leaf_mask_level);
   check(kiwami_scene_attach(scene, geometry, nullptr), device);
 }
 
@@ -239,7 +257,7 @@ void BuiltScene::build_instances(kiwami_device* device, const SceneFile& file,
   kiwami_scene_info shown{};
   for (const Mesh& mesh : file.meshes) {
     shown_.push_back(make_scene(device, options));
-    attach(device, shown_.back(), mesh);
+    attach(device, shown_.back(), mesh, options.leaf_mask_level);
     add_costs(commit(shown_.back()), shown);
   }
   scene_ = make_scene(device, options);
@@ -302,6 +320,15 @@ void BuiltScene::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami
 
 void BuiltScene::any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const {
   check(kiwami_any_hit(scene_, rays.data(), 0, occluded.data(), 0, rays.size(), nullptr), nullptr);
+}
+
+void BuiltScene::filtered_hits(std::span<const kiwami_ray> rays, kiwami_filter_function filter,
+                               void* user, std::span<kiwami_hit> hits) const {
+  kiwami_query query;
+  check(kiwami_query_init(&query, sizeof query), nullptr);
+  query.filter = filter;
+  query.filter_user = user;
+  check(kiwami_closest_hit(scene_, rays.data(), 0, hits.data(), 0, rays.size(), &query), nullptr);
 }
 
 uint64_t BuiltScene::multi_hits(std::span<const kiwami_ray> rays, uint32_t max_hits,

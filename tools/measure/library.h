@@ -56,6 +56,7 @@ struct BuildOptions {
   uint32_t contraction = KIWAMI_CONTRACTION_OPTIMAL;
   uint32_t layout = KIWAMI_LAYOUT_FAST;
   std::vector<Parameter> parameters = {};  ///< set after the others, in this order
+  uint32_t leaf_mask_level = 0;  ///< of opacity micromaps of leaves for all triangles; 0: none
 };
 
 /// What a KIWAMI_QUALITY_* stands for.
@@ -112,6 +113,9 @@ class BuiltScene : public Tracer {
   /// As the library says it.
   void own_closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const;
   void any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
+  /// Of the hits that the filter accepts.
+  void filtered_hits(std::span<const kiwami_ray> rays, kiwami_filter_function filter, void* user,
+                     std::span<kiwami_hit> hits) const;
   /// The same with one call a ray, each on the calling thread.
   void closest_hits_singly(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const;
   void any_hits_singly(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const;
@@ -130,7 +134,8 @@ class BuiltScene : public Tracer {
   kiwami_scene* make_scene(kiwami_device* device, const BuildOptions& options);
   void build(kiwami_device* device, const SceneFile& file, const BuildOptions& options);
   void build_instances(kiwami_device* device, const SceneFile& file, const BuildOptions& options);
-  void attach(kiwami_device* device, kiwami_scene* scene, const Mesh& mesh);
+  void attach(kiwami_device* device, kiwami_scene* scene, const Mesh& mesh,
+              uint32_t leaf_mask_level);
   void release();
   kiwami_bvh_measures measure(const kiwami_bvh* bvh, uint32_t flags,
                               kiwami_bvh_node_measures* nodes) const;

@@ -26,6 +26,9 @@ internal delegate void kiwami_log(IntPtr user, int severity, IntPtr sentence);
 internal delegate int kiwami_progress(IntPtr user, double fraction);
 
 [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+internal delegate int kiwami_filter_function(IntPtr user, IntPtr candidate);
+
+[UnmanagedFunctionPointer(CallingConvention.Cdecl)]
 internal delegate int kiwami_write(IntPtr user, IntPtr data, UIntPtr size);
 
 [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
@@ -219,12 +222,37 @@ internal unsafe struct kiwami_hit_fields {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_exclusion {
+  public uint primitive_id;
+  public uint geometry_id;
+  public uint instance_id;
+  public const int Size = 12;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_filter_candidate {
+  public uint struct_size;
+  public uint depth;
+  public ulong ray;
+  public kiwami_hit hit;
+  public uint reserved;
+  public fixed uint instance_path[8];
+  public const int Size = 88;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_query {
   public uint struct_size;
   public uint flags;
   public IntPtr instance_paths;
   public ulong instance_path_stride;
-  public const int Size = 24;
+  public IntPtr exclusions;
+  public ulong exclusion_stride;
+  public IntPtr exclusion_paths;
+  public ulong exclusion_path_stride;
+  public IntPtr filter;
+  public IntPtr filter_user;
+  public const int Size = 72;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -541,6 +569,20 @@ internal unsafe struct kiwami_light_query {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_opacity_desc {
+  public uint struct_size;
+  public uint format;
+  public uint level;
+  public uint reserved;
+  public IntPtr maps;
+  public ulong map_stride;
+  public ulong map_count;
+  public IntPtr indices;
+  public ulong index_stride;
+  public const int Size = 56;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_spheres_desc {
   public uint struct_size;
   public uint flags;
@@ -661,6 +703,10 @@ internal static class Native {
   public const uint KIWAMI_INVALID_ID = 4294967295;
   public const float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
   public const uint KIWAMI_MAX_INSTANCE_DEPTH = 8;
+  public const uint KIWAMI_OPACITY_ALL_OPAQUE = 4294967293;
+  public const uint KIWAMI_OPACITY_ALL_TRANSPARENT = 4294967292;
+  public const uint KIWAMI_OPACITY_ALL_UNKNOWN_OPAQUE = 4294967295;
+  public const uint KIWAMI_OPACITY_ALL_UNKNOWN_TRANSPARENT = 4294967294;
   public const uint KIWAMI_VERSION_MAJOR = 0;
   public const uint KIWAMI_VERSION_MINOR = 1;
   public const uint KIWAMI_VERSION_PATCH = 0;
@@ -744,6 +790,9 @@ internal static class Native {
   public const uint KIWAMI_INSTANCES_SHARE_BUFFERS = 1;
   public const uint KIWAMI_RAY_CULL_BACK_FACES = 1;
   public const uint KIWAMI_RAY_CULL_FRONT_FACES = 2;
+  public const uint KIWAMI_FILTER_REJECT = 0;
+  public const uint KIWAMI_FILTER_ACCEPT = 1;
+  public const uint KIWAMI_FILTER_ACCEPT_AND_STOP = 2;
   public const uint KIWAMI_QUERY_CALLING_THREAD = 1;
   public const uint KIWAMI_MEASURE_WITHOUT_EPO = 1;
   public const uint KIWAMI_COUNT_CLOSEST_HIT = 0;
@@ -773,6 +822,13 @@ internal static class Native {
   public const uint KIWAMI_RECEIVER_BOTH_SIDES = 1;
   public const uint KIWAMI_LIGHT_METHOD_TREE = 0;
   public const uint KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
+  public const uint KIWAMI_OPACITY_TRANSPARENT = 0;
+  public const uint KIWAMI_OPACITY_OPAQUE = 1;
+  public const uint KIWAMI_OPACITY_UNKNOWN_TRANSPARENT = 2;
+  public const uint KIWAMI_OPACITY_UNKNOWN_OPAQUE = 3;
+  public const uint KIWAMI_OPACITY_2_STATES = 1;
+  public const uint KIWAMI_OPACITY_4_STATES = 2;
+  public const uint KIWAMI_OPACITY_MAX_LEVEL = 6;
   public const uint KIWAMI_SHAPES_SHARE_BUFFERS = 1;
   public const uint KIWAMI_USER_HITS_PER_PRIMITIVE = 4;
 
@@ -1036,6 +1092,15 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_light_pdf(IntPtr tree, IntPtr receivers, UIntPtr receiver_stride, IntPtr lights, UIntPtr light_stride, IntPtr probabilities, UIntPtr probability_stride, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_opacity_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_triangle_mesh_set_opacity(IntPtr mesh, IntPtr desc);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern uint kiwami_opacity_micro_triangle(float u, float v, uint level);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_spheres_desc_init(IntPtr desc, UIntPtr size);

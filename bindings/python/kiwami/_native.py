@@ -9,6 +9,10 @@ KIWAMI_FILE_FORMAT_VERSION = 1
 KIWAMI_INVALID_ID = 4294967295
 KIWAMI_MAX_COORDINATE = 1.152921504606847e+18
 KIWAMI_MAX_INSTANCE_DEPTH = 8
+KIWAMI_OPACITY_ALL_OPAQUE = 4294967293
+KIWAMI_OPACITY_ALL_TRANSPARENT = 4294967292
+KIWAMI_OPACITY_ALL_UNKNOWN_OPAQUE = 4294967295
+KIWAMI_OPACITY_ALL_UNKNOWN_TRANSPARENT = 4294967294
 KIWAMI_VERSION_MAJOR = 0
 KIWAMI_VERSION_MINOR = 1
 KIWAMI_VERSION_PATCH = 0
@@ -92,6 +96,9 @@ KIWAMI_MAX_OPTIMIZERS = 8
 KIWAMI_INSTANCES_SHARE_BUFFERS = 1
 KIWAMI_RAY_CULL_BACK_FACES = 1
 KIWAMI_RAY_CULL_FRONT_FACES = 2
+KIWAMI_FILTER_REJECT = 0
+KIWAMI_FILTER_ACCEPT = 1
+KIWAMI_FILTER_ACCEPT_AND_STOP = 2
 KIWAMI_QUERY_CALLING_THREAD = 1
 KIWAMI_MEASURE_WITHOUT_EPO = 1
 KIWAMI_COUNT_CLOSEST_HIT = 0
@@ -121,6 +128,13 @@ KIWAMI_LIGHT_BUILDER_OCTANTS = 1
 KIWAMI_RECEIVER_BOTH_SIDES = 1
 KIWAMI_LIGHT_METHOD_TREE = 0
 KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1
+KIWAMI_OPACITY_TRANSPARENT = 0
+KIWAMI_OPACITY_OPAQUE = 1
+KIWAMI_OPACITY_UNKNOWN_TRANSPARENT = 2
+KIWAMI_OPACITY_UNKNOWN_OPAQUE = 3
+KIWAMI_OPACITY_2_STATES = 1
+KIWAMI_OPACITY_4_STATES = 2
+KIWAMI_OPACITY_MAX_LEVEL = 6
 KIWAMI_SHAPES_SHARE_BUFFERS = 1
 KIWAMI_USER_HITS_PER_PRIMITIVE = 4
 
@@ -152,6 +166,8 @@ kiwami_deallocate = ctypes.CFUNCTYPE(
 kiwami_log = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int32, ctypes.c_void_p)
 
 kiwami_progress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_double)
+
+kiwami_filter_function = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p)
 
 kiwami_write = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)
 
@@ -352,12 +368,37 @@ class kiwami_hit_fields(ctypes.Structure):
     ]
 
 
+class kiwami_exclusion(ctypes.Structure):
+    _fields_ = [
+        ("primitive_id", ctypes.c_uint32),
+        ("geometry_id", ctypes.c_uint32),
+        ("instance_id", ctypes.c_uint32),
+    ]
+
+
+class kiwami_filter_candidate(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("depth", ctypes.c_uint32),
+        ("ray", ctypes.c_uint64),
+        ("hit", kiwami_hit),
+        ("reserved", ctypes.c_uint32),
+        ("instance_path", ctypes.c_uint32 * 8),
+    ]
+
+
 class kiwami_query(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
         ("flags", ctypes.c_uint32),
         ("instance_paths", ctypes.c_void_p),
         ("instance_path_stride", ctypes.c_uint64),
+        ("exclusions", ctypes.c_void_p),
+        ("exclusion_stride", ctypes.c_uint64),
+        ("exclusion_paths", ctypes.c_void_p),
+        ("exclusion_path_stride", ctypes.c_uint64),
+        ("filter", ctypes.c_void_p),
+        ("filter_user", ctypes.c_void_p),
     ]
 
 
@@ -674,6 +715,20 @@ class kiwami_light_query(ctypes.Structure):
     ]
 
 
+class kiwami_opacity_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("format", ctypes.c_uint32),
+        ("level", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+        ("maps", ctypes.c_void_p),
+        ("map_stride", ctypes.c_uint64),
+        ("map_count", ctypes.c_uint64),
+        ("indices", ctypes.c_void_p),
+        ("index_stride", ctypes.c_uint64),
+    ]
+
+
 class kiwami_spheres_desc(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
@@ -799,7 +854,9 @@ SIZES = {
     kiwami_output_field: 16,
     kiwami_ray_fields: 184,
     kiwami_hit_fields: 152,
-    kiwami_query: 24,
+    kiwami_exclusion: 12,
+    kiwami_filter_candidate: 88,
+    kiwami_query: 72,
     kiwami_bvh_node: 56,
     kiwami_bvh_primitive: 8,
     kiwami_bvh_info: 56,
@@ -826,6 +883,7 @@ SIZES = {
     kiwami_light_choice: 24,
     kiwami_light_name: 8,
     kiwami_light_query: 16,
+    kiwami_opacity_desc: 56,
     kiwami_spheres_desc: 48,
     kiwami_discs_desc: 72,
     kiwami_curves_desc: 80,
@@ -1205,6 +1263,16 @@ def declare(library):
         ctypes.c_size_t,
         ctypes.c_size_t,
         ctypes.c_void_p,
+    ]
+    library.kiwami_opacity_desc_init.restype = ctypes.c_int32
+    library.kiwami_opacity_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_triangle_mesh_set_opacity.restype = ctypes.c_int32
+    library.kiwami_triangle_mesh_set_opacity.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_opacity_micro_triangle.restype = ctypes.c_uint32
+    library.kiwami_opacity_micro_triangle.argtypes = [
+        ctypes.c_float,
+        ctypes.c_float,
+        ctypes.c_uint32,
     ]
     library.kiwami_spheres_desc_init.restype = ctypes.c_int32
     library.kiwami_spheres_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]

@@ -13,6 +13,10 @@ pub const KIWAMI_FILE_FORMAT_VERSION: u32 = 1;
 pub const KIWAMI_INVALID_ID: u32 = 4294967295;
 pub const KIWAMI_MAX_COORDINATE: f32 = 1.152921504606847e+18;
 pub const KIWAMI_MAX_INSTANCE_DEPTH: u32 = 8;
+pub const KIWAMI_OPACITY_ALL_OPAQUE: u32 = 4294967293;
+pub const KIWAMI_OPACITY_ALL_TRANSPARENT: u32 = 4294967292;
+pub const KIWAMI_OPACITY_ALL_UNKNOWN_OPAQUE: u32 = 4294967295;
+pub const KIWAMI_OPACITY_ALL_UNKNOWN_TRANSPARENT: u32 = 4294967294;
 pub const KIWAMI_VERSION_MAJOR: u32 = 0;
 pub const KIWAMI_VERSION_MINOR: u32 = 1;
 pub const KIWAMI_VERSION_PATCH: u32 = 0;
@@ -96,6 +100,9 @@ pub const KIWAMI_MAX_OPTIMIZERS: u32 = 8;
 pub const KIWAMI_INSTANCES_SHARE_BUFFERS: u32 = 1;
 pub const KIWAMI_RAY_CULL_BACK_FACES: u32 = 1;
 pub const KIWAMI_RAY_CULL_FRONT_FACES: u32 = 2;
+pub const KIWAMI_FILTER_REJECT: u32 = 0;
+pub const KIWAMI_FILTER_ACCEPT: u32 = 1;
+pub const KIWAMI_FILTER_ACCEPT_AND_STOP: u32 = 2;
 pub const KIWAMI_QUERY_CALLING_THREAD: u32 = 1;
 pub const KIWAMI_MEASURE_WITHOUT_EPO: u32 = 1;
 pub const KIWAMI_COUNT_CLOSEST_HIT: u32 = 0;
@@ -125,6 +132,13 @@ pub const KIWAMI_LIGHT_BUILDER_OCTANTS: u32 = 1;
 pub const KIWAMI_RECEIVER_BOTH_SIDES: u32 = 1;
 pub const KIWAMI_LIGHT_METHOD_TREE: u32 = 0;
 pub const KIWAMI_LIGHT_QUERY_CALLING_THREAD: u32 = 1;
+pub const KIWAMI_OPACITY_TRANSPARENT: u32 = 0;
+pub const KIWAMI_OPACITY_OPAQUE: u32 = 1;
+pub const KIWAMI_OPACITY_UNKNOWN_TRANSPARENT: u32 = 2;
+pub const KIWAMI_OPACITY_UNKNOWN_OPAQUE: u32 = 3;
+pub const KIWAMI_OPACITY_2_STATES: u32 = 1;
+pub const KIWAMI_OPACITY_4_STATES: u32 = 2;
+pub const KIWAMI_OPACITY_MAX_LEVEL: u32 = 6;
 pub const KIWAMI_SHAPES_SHARE_BUFFERS: u32 = 1;
 pub const KIWAMI_USER_HITS_PER_PRIMITIVE: u32 = 4;
 
@@ -170,6 +184,9 @@ pub type kiwami_log =
 
 pub type kiwami_progress =
     Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
+
+pub type kiwami_filter_function =
+    Option<unsafe extern "C" fn(user: *mut c_void, candidate: *const kiwami_filter_candidate) -> i32>;
 
 pub type kiwami_write =
     Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
@@ -377,13 +394,40 @@ const _: () = assert!(std::mem::size_of::<kiwami_hit_fields>() == 152);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct kiwami_exclusion {
+    pub primitive_id: u32,
+    pub geometry_id: u32,
+    pub instance_id: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_exclusion>() == 12);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_filter_candidate {
+    pub struct_size: u32,
+    pub depth: u32,
+    pub ray: u64,
+    pub hit: kiwami_hit,
+    pub reserved: u32,
+    pub instance_path: [u32; 8],
+}
+const _: () = assert!(std::mem::size_of::<kiwami_filter_candidate>() == 88);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct kiwami_query {
     pub struct_size: u32,
     pub flags: u32,
     pub instance_paths: *mut u32,
     pub instance_path_stride: u64,
+    pub exclusions: *const kiwami_exclusion,
+    pub exclusion_stride: u64,
+    pub exclusion_paths: *const u32,
+    pub exclusion_path_stride: u64,
+    pub filter: kiwami_filter_function,
+    pub filter_user: *mut c_void,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_query>() == 24);
+const _: () = assert!(std::mem::size_of::<kiwami_query>() == 72);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -726,6 +770,21 @@ const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 16);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct kiwami_opacity_desc {
+    pub struct_size: u32,
+    pub format: u32,
+    pub level: u32,
+    pub reserved: u32,
+    pub maps: *const c_void,
+    pub map_stride: u64,
+    pub map_count: u64,
+    pub indices: *const c_void,
+    pub index_stride: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_opacity_desc>() == 56);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct kiwami_spheres_desc {
     pub struct_size: u32,
     pub flags: u32,
@@ -932,6 +991,9 @@ extern "C" {
     pub fn kiwami_light_tree_get_info(tree: *const kiwami_light_tree, info: *mut kiwami_light_tree_info) -> kiwami_result;
     pub fn kiwami_light_sample(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, choices: *mut kiwami_light_choice, choice_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
     pub fn kiwami_light_pdf(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, lights: *const kiwami_light_name, light_stride: usize, probabilities: *mut f32, probability_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
+    pub fn kiwami_opacity_desc_init(desc: *mut kiwami_opacity_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_triangle_mesh_set_opacity(mesh: *mut kiwami_geometry, desc: *const kiwami_opacity_desc) -> kiwami_result;
+    pub fn kiwami_opacity_micro_triangle(u: f32, v: f32, level: u32) -> u32;
     pub fn kiwami_spheres_desc_init(desc: *mut kiwami_spheres_desc, size: usize) -> kiwami_result;
     pub fn kiwami_discs_desc_init(desc: *mut kiwami_discs_desc, size: usize) -> kiwami_result;
     pub fn kiwami_curves_desc_init(desc: *mut kiwami_curves_desc, size: usize) -> kiwami_result;

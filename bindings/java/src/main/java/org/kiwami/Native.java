@@ -14,6 +14,10 @@ final class Native {
   static final int KIWAMI_INVALID_ID = 0xffffffff;
   static final float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
   static final int KIWAMI_MAX_INSTANCE_DEPTH = 8;
+  static final int KIWAMI_OPACITY_ALL_OPAQUE = 0xfffffffd;
+  static final int KIWAMI_OPACITY_ALL_TRANSPARENT = 0xfffffffc;
+  static final int KIWAMI_OPACITY_ALL_UNKNOWN_OPAQUE = 0xffffffff;
+  static final int KIWAMI_OPACITY_ALL_UNKNOWN_TRANSPARENT = 0xfffffffe;
   static final int KIWAMI_VERSION_MAJOR = 0;
   static final int KIWAMI_VERSION_MINOR = 1;
   static final int KIWAMI_VERSION_PATCH = 0;
@@ -97,6 +101,9 @@ final class Native {
   static final int KIWAMI_INSTANCES_SHARE_BUFFERS = 1;
   static final int KIWAMI_RAY_CULL_BACK_FACES = 1;
   static final int KIWAMI_RAY_CULL_FRONT_FACES = 2;
+  static final int KIWAMI_FILTER_REJECT = 0;
+  static final int KIWAMI_FILTER_ACCEPT = 1;
+  static final int KIWAMI_FILTER_ACCEPT_AND_STOP = 2;
   static final int KIWAMI_QUERY_CALLING_THREAD = 1;
   static final int KIWAMI_MEASURE_WITHOUT_EPO = 1;
   static final int KIWAMI_COUNT_CLOSEST_HIT = 0;
@@ -126,6 +133,13 @@ final class Native {
   static final int KIWAMI_RECEIVER_BOTH_SIDES = 1;
   static final int KIWAMI_LIGHT_METHOD_TREE = 0;
   static final int KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
+  static final int KIWAMI_OPACITY_TRANSPARENT = 0;
+  static final int KIWAMI_OPACITY_OPAQUE = 1;
+  static final int KIWAMI_OPACITY_UNKNOWN_TRANSPARENT = 2;
+  static final int KIWAMI_OPACITY_UNKNOWN_OPAQUE = 3;
+  static final int KIWAMI_OPACITY_2_STATES = 1;
+  static final int KIWAMI_OPACITY_4_STATES = 2;
+  static final int KIWAMI_OPACITY_MAX_LEVEL = 6;
   static final int KIWAMI_SHAPES_SHARE_BUFFERS = 1;
   static final int KIWAMI_USER_HITS_PER_PRIMITIVE = 4;
 
@@ -307,13 +321,38 @@ final class Native {
     static final int INSTANCE_ID = 136;
   }
 
+  /** Offsets of kiwami_exclusion. */
+  static final class Exclusion {
+    static final int STRUCT_BYTES = 12;
+    static final int PRIMITIVE_ID = 0;
+    static final int GEOMETRY_ID = 4;
+    static final int INSTANCE_ID = 8;
+  }
+
+  /** Offsets of kiwami_filter_candidate. */
+  static final class FilterCandidate {
+    static final int STRUCT_BYTES = 88;
+    static final int STRUCT_SIZE = 0;
+    static final int DEPTH = 4;
+    static final int RAY = 8;
+    static final int HIT = 16;
+    static final int RESERVED = 52;
+    static final int INSTANCE_PATH = 56;
+  }
+
   /** Offsets of kiwami_query. */
   static final class Query {
-    static final int STRUCT_BYTES = 24;
+    static final int STRUCT_BYTES = 72;
     static final int STRUCT_SIZE = 0;
     static final int FLAGS = 4;
     static final int INSTANCE_PATHS = 8;
     static final int INSTANCE_PATH_STRIDE = 16;
+    static final int EXCLUSIONS = 24;
+    static final int EXCLUSION_STRIDE = 32;
+    static final int EXCLUSION_PATHS = 40;
+    static final int EXCLUSION_PATH_STRIDE = 48;
+    static final int FILTER = 56;
+    static final int FILTER_USER = 64;
   }
 
   /** Offsets of kiwami_bvh_node. */
@@ -629,6 +668,20 @@ final class Native {
     static final int RESERVED = 12;
   }
 
+  /** Offsets of kiwami_opacity_desc. */
+  static final class OpacityDesc {
+    static final int STRUCT_BYTES = 56;
+    static final int STRUCT_SIZE = 0;
+    static final int FORMAT = 4;
+    static final int LEVEL = 8;
+    static final int RESERVED = 12;
+    static final int MAPS = 16;
+    static final int MAP_STRIDE = 24;
+    static final int MAP_COUNT = 32;
+    static final int INDICES = 40;
+    static final int INDEX_STRIDE = 48;
+  }
+
   /** Offsets of kiwami_spheres_desc. */
   static final class SpheresDesc {
     static final int STRUCT_BYTES = 48;
@@ -919,6 +972,12 @@ final class Native {
   static native int kiwami_light_sample(Pointer tree, Pointer receivers, long receiverStride, Pointer choices, long choiceStride, long count, Pointer query);
 
   static native int kiwami_light_pdf(Pointer tree, Pointer receivers, long receiverStride, Pointer lights, long lightStride, Pointer probabilities, long probabilityStride, long count, Pointer query);
+
+  static native int kiwami_opacity_desc_init(Pointer desc, long size);
+
+  static native int kiwami_triangle_mesh_set_opacity(Pointer mesh, Pointer desc);
+
+  static native int kiwami_opacity_micro_triangle(float u, float v, int level);
 
   static native int kiwami_spheres_desc_init(Pointer desc, long size);
 
