@@ -169,6 +169,23 @@ static void check_user_geometry(void) {
 }
 
 /* The structs that hold pointers: their layout is that of 64-bit machines. */
+static void check_instances(void) {
+  SIZE(kiwami_instances_desc, 88);
+  FIELD(kiwami_instances_desc, struct_size, 0);
+  FIELD(kiwami_instances_desc, flags, 4);
+  FIELD(kiwami_instances_desc, scenes, 8);
+  FIELD(kiwami_instances_desc, scene_count, 16);
+  FIELD(kiwami_instances_desc, scene_indices, 24);
+  FIELD(kiwami_instances_desc, scene_index_stride, 32);
+  FIELD(kiwami_instances_desc, transforms, 40);
+  FIELD(kiwami_instances_desc, transform_stride, 48);
+  FIELD(kiwami_instances_desc, count, 56);
+  FIELD(kiwami_instances_desc, masks, 64);
+  FIELD(kiwami_instances_desc, mask_stride, 72);
+  FIELD(kiwami_instances_desc, mask, 80);
+  FIELD(kiwami_instances_desc, reserved, 84);
+}
+
 static void check_device_and_mesh(void) {
   SIZE(kiwami_device_desc, 88);
   FIELD(kiwami_device_desc, struct_size, 0);
@@ -574,6 +591,13 @@ static void check_numbers(void) {
   expect("KIWAMI_PARAMETER_LBVH_DELTA", KIWAMI_PARAMETER_LBVH_DELTA, 19);
   expect("KIWAMI_PARAMETER_LBVH_CHUNK_SIZE", KIWAMI_PARAMETER_LBVH_CHUNK_SIZE, 20);
   expect("KIWAMI_PARAMETER_LAYOUT", KIWAMI_PARAMETER_LAYOUT, 21);
+  expect("KIWAMI_PARAMETER_REBRAID", KIWAMI_PARAMETER_REBRAID, 40);
+  expect("KIWAMI_PARAMETER_REBRAID_BUDGET", KIWAMI_PARAMETER_REBRAID_BUDGET, 41);
+  expect("KIWAMI_REBRAID_OFF", KIWAMI_REBRAID_OFF, 0);
+  expect("KIWAMI_REBRAID_FULL", KIWAMI_REBRAID_FULL, 1);
+  expect("KIWAMI_REBRAID_ROOTS", KIWAMI_REBRAID_ROOTS, 2);
+  expect("KIWAMI_INSTANCES_SHARE_BUFFERS", KIWAMI_INSTANCES_SHARE_BUFFERS, 1);
+  expect("KIWAMI_MAX_INSTANCE_DEPTH", KIWAMI_MAX_INSTANCE_DEPTH, 8);
   expect("KIWAMI_LAYOUT_FAST", KIWAMI_LAYOUT_FAST, 0);
   expect("KIWAMI_LAYOUT_COMPACT", KIWAMI_LAYOUT_COMPACT, 1);
   expect("KIWAMI_LIGHT_POINT", KIWAMI_LIGHT_POINT, 0);
@@ -593,6 +617,7 @@ static void check_numbers(void) {
 int main(void) {
   check_ray_and_hit();
   if (sizeof(void*) == 8) {
+    check_instances();
     check_device_and_mesh();
     check_shapes();
     check_user_geometry();

@@ -68,6 +68,12 @@ Mesh random_mesh(Random& random, uint32_t count) {
     mesh.add(centre + random_point(random, 0.5f), centre + random_point(random, 0.5f),
              centre + random_point(random, 0.5f));
   }
+  // A flat box is no thicker than the rounding of what is in it.
+  if (random.one_in(2)) {
+    const int axis = random.between(0, 2);
+    const float height = random.symmetric();
+    for (Point& vertex : mesh.vertices) vertex[axis] = height;
+  }
   return mesh;
 }
 
@@ -89,7 +95,7 @@ Matrix34 random_transform(Random& random) {
                            s * (q[2] * q[3] - q[1] * q[0])},
                           {s * (q[1] * q[3] - q[2] * q[0]), s * (q[2] * q[3] + q[1] * q[0]),
                            1 - s * (q[1] * q[1] + q[2] * q[2])}};
-  const bool is_plain = random.one_in(6);
+  const bool is_plain = random.one_in(2);
   const float shear = random.one_in(3) ? random.symmetric() * 0.3f : 0.0f;
   Matrix34 m{};
   for (size_t k = 0; k < 3; ++k) {
