@@ -2,6 +2,7 @@
 #pragma once
 
 #include "builders/morton_order.h"
+#include "bvh/sah_cost.h"
 
 namespace kiwami {
 
@@ -10,6 +11,7 @@ namespace kiwami {
 /// the second goes on. Which neighbour a range joins is decided by the lesser of two deltas at its
 /// ends, so any delta gives a tree. Departs from it in 63-bit codes, and in a delta that is never
 /// equal for two neighbours: equal codes are told apart by their places, which halves their runs.
+/// Subtrees become leaves on the way up, where their primitives stand side by side already.
 class LbvhBuilder {
  public:
   /// What is compared at the border between two neighbours.
@@ -21,6 +23,9 @@ class LbvhBuilder {
     Delta delta = Delta::kCode;
     CurveCode curve_code = CurveCode::kPlain;
     uint32_t chunk_size = 1;  ///< primitives of a leaf at most (leaves_by_area)
+    /// Subtrees of at most so many primitives become one leaf where that is no dearer.
+    uint32_t max_leaf_size = 1;
+    SahCosts costs = {};
   };
 
   /// The same tree for any number of threads.

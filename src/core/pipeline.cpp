@@ -107,10 +107,22 @@ uint32_t collapsible_leaf_size(uint32_t leaf_size) {
   return std::min(leaf_size, std::max(4u, leaf_size / 2));
 }
 
-/// Whether a builder makes leaves of several primitives where that is cheaper.
-bool makes_leaves(uint32_t builder) {
-  return builder == KIWAMI_BUILDER_BINNED_SAH || builder == KIWAMI_BUILDER_SWEEP_SAH ||
-         builder == KIWAMI_BUILDER_SPATIAL_SPLIT;
+/// Whether an optimiser that the parameters name acts on the binary tree.
+bool is_binary_edited(const SceneParameters& parameters);
+
+/// Whether the builder makes leaves of several primitives where that is cheaper. Along a curve it
+/// does so where nothing is changed after.
+bool makes_leaves(const SceneParameters& parameters) {
+  switch (parameters.whole(KIWAMI_PARAMETER_BUILDER)) {
+    case KIWAMI_BUILDER_BINNED_SAH:
+    case KIWAMI_BUILDER_SWEEP_SAH:
+    case KIWAMI_BUILDER_SPATIAL_SPLIT:
+      return true;
+    case KIWAMI_BUILDER_LBVH:
+      return !is_binary_edited(parameters);
+    default:
+      return false;
+  }
 }
 
 CurveCode curve_code(const SceneParameters& parameters) {
@@ -123,7 +135,9 @@ LbvhBuilder::Config lbvh_config(const SceneParameters& parameters, uint32_t widt
   return {by_area ? LbvhBuilder::Delta::kSurfaceArea : LbvhBuilder::Delta::kCode,
           curve_code(parameters),
           std::min(parameters.whole(KIWAMI_PARAMETER_LBVH_CHUNK_SIZE),
-                   binary_leaf_size_of(parameters, width))};
+                   binary_leaf_size_of(parameters, width)),
+          makes_leaves(parameters) ? binary_leaf_size_of(parameters, width) : 1,
+          costs_of(parameters, width)};
 }
 
 PlocBuilder::Config ploc_config(const SceneParameters& parameters) {
@@ -249,6 +263,12 @@ const Optimizer* find_optimizer(uint32_t number) {
   return nullptr;
 }
 
+bool is_binary_edited(const SceneParameters& parameters) {
+  const std::span<const uint32_t> methods = parameters.optimizers();
+  return std::any_of(methods.begin(), methods.end(),
+                     [](uint32_t method) { return find_optimizer(method)->on_binary != nullptr; });
+}
+
 ContractionMethod contraction_of(const SceneParameters& parameters) {
   return static_cast<ContractionMethod>(parameters.whole(KIWAMI_PARAMETER_CONTRACTION));
 }
@@ -333,7 +353,7 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
     if (optimizer.on_binary) optimizer.on_binary(bvh, {source, {}, costs, memory, parallel});
   }
   // Builders that know nothing of blocks leave one primitive a leaf.
-  if (!makes_leaves(parameters.whole(KIWAMI_PARAMETER_BUILDER))) {
+  if (!makes_leaves(parameters)) {
     collapse_leaves(bvh, binary_leaf_size_of(parameters, width), costs, memory);
   }
   return bvh;

@@ -189,6 +189,82 @@ TEST_F(MortonBuilders, RadixSortIsAStableSort) {
   }
 }
 
+/// Boxes around points, so that their codes are those of the points.
+Array<BuildPrimitive> boxes_at(const std::vector<Point>& points, kiwami::Memory& memory) {
+  Array<BuildPrimitive> boxes(memory, points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    const kiwami::Vec3f at = {points[i].x, points[i].y, points[i].z};
+    boxes[i] = {at, static_cast<uint32_t>(i), at, 0};
+  }
+  return boxes;
+}
+
+/// Many points anywhere; in few places; in one cell of the curve but for one that is far away, so
+/// that no leading bits tell them apart; and in small clusters, within which none do.
+std::vector<std::vector<Point>> point_clouds(uint64_t seed) {
+  Random random(seed);
+  std::vector<std::vector<Point>> clouds(4);
+  for (int i = 0; i < 30000; ++i) {
+    clouds[0].push_back({random.symmetric(), random.symmetric(), random.symmetric()});
+    const auto coarse = [&] { return static_cast<float>(random.below(12)); };
+    clouds[1].push_back({coarse(), coarse(), coarse()});
+    const auto near = [&] { return random.unit() * 1e-4f; };
+    clouds[2].push_back({near(), near(), near()});
+    const Point centre = clouds[0][static_cast<size_t>(i % 300)];
+    clouds[3].push_back(centre + Point{near(), near(), near()});
+  }
+  clouds[2].push_back({1, 1, 1});
+  return clouds;
+}
+
+TEST_F(MortonBuilders, SortsByCodeAndThenByTheOrderGiven) {
+  for (const std::vector<Point>& points : point_clouds(seed())) {
+    const MortonOrder order =
+        sort_by_morton_code(boxes_at(points, memory_), memory_, many_threads_, CurveCode::kPlain);
+    ASSERT_EQ(order.codes.size(), points.size());
+    std::vector<bool> has(points.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+      const uint32_t id = order.primitives[i].id;
+      ASSERT_FALSE(has[id]);
+      has[id] = true;
+      if (i == 0) continue;
+      ASSERT_LE(order.codes[i - 1], order.codes[i]);
+      if (order.codes[i - 1] == order.codes[i]) {
+        ASSERT_LT(order.primitives[i - 1].id, id);
+      }
+    }
+  }
+}
+
+/// Leaves that are made on the way up are those that are made after.
+TEST_F(MortonBuilders, LbvhMakesTheLeavesThatCollapsingMakes) {
+  std::vector<NamedMesh> meshes = degenerate_meshes(seed());
+  const size_t degenerate_count = meshes.size();
+  meshes.push_back({"soup", soup(20000, seed())});
+  meshes.push_back({"terrain", terrain(90)});
+  for (size_t i = 0; i < meshes.size(); ++i) {
+    const NamedMesh& named = meshes[i];
+    SCOPED_TRACE(named.name);
+    for (const auto delta : {LbvhBuilder::Delta::kCode, LbvhBuilder::Delta::kSurfaceArea}) {
+      for (const uint32_t chunk : {1u, 3u}) {
+        for (const uint32_t size : {4u, 8u}) {
+          const kiwami::SahCosts costs = {1.0f, 1.0f, size};
+          BinaryBvh after = lbvh(named.mesh, {delta, CurveCode::kPlain, chunk}, one_thread_);
+          kiwami::collapse_leaves(after, size, costs, memory_);
+          const BinaryBvh bvh =
+              lbvh(named.mesh, {delta, CurveCode::kPlain, chunk, size, costs}, many_threads_);
+          verify(bvh, named.mesh, size);
+          if (i < degenerate_count) continue;  // too deep ones are halved before or after
+          EXPECT_NEAR(sah_cost(bvh, costs), sah_cost(after, costs), 1e-6 * sah_cost(after, costs));
+          EXPECT_NEAR(static_cast<double>(bvh.nodes.size()),
+                      static_cast<double>(after.nodes.size()),
+                      1e-3 * static_cast<double>(after.nodes.size()));
+        }
+      }
+    }
+  }
+}
+
 /// The linear BVH top-down: a range is cut at its greatest border.
 class LinearByDefinition {
  public:
