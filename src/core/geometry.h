@@ -9,7 +9,15 @@
 
 namespace kiwami {
 
-enum class GeometryKind : uint32_t { kTriangleMesh, kInstances, kSpheres, kDiscs, kCurves, kUser };
+enum class GeometryKind : uint32_t {
+  kTriangleMesh,
+  kInstances,
+  kSpheres,
+  kDiscs,
+  kCurves,
+  kUser,
+  kMovingMesh
+};
 
 /// What a kiwami_geometry is, whatever its kind: what scenes need of all of them. Each kind is a
 /// final class that derives from it.

@@ -12,6 +12,8 @@ void SceneParts::build(const AttachedGeometry* geometries, size_t count, const P
   }
   user_.build(geometries, count, plan);
   add(user_.tree(), user_.view());
+  motion_.build(geometries, count, plan);
+  add(motion_.tree(), motion_.view());
 }
 
 void SceneParts::add(const PartTree& tree, const ScenePart& view) {
@@ -21,18 +23,19 @@ void SceneParts::add(const PartTree& tree, const ScenePart& view) {
 Bounds SceneParts::bounds() const {
   Bounds bounds = user_.tree().bounds;
   bounds.extend(instances_.bounds());
+  bounds.extend(motion_.tree().bounds);
   for (const ShapePart& part : shapes_) bounds.extend(part.tree().bounds);
   return bounds;
 }
 
 uint64_t SceneParts::primitive_count() const {
-  uint64_t count = user_.tree().primitive_count;
+  uint64_t count = user_.tree().primitive_count + motion_.tree().primitive_count;
   for (const ShapePart& part : shapes_) count += part.tree().primitive_count;
   return count;
 }
 
 uint64_t SceneParts::skipped_count() const {
-  uint64_t count = user_.numbered_count();
+  uint64_t count = user_.numbered_count() + motion_.numbered_count();
   for (const ShapePart& part : shapes_) count += part.numbered_count();
   return count - primitive_count();
 }
@@ -40,6 +43,7 @@ uint64_t SceneParts::skipped_count() const {
 void SceneParts::validate(Memory& memory, const Parallel& parallel) const {
   instances_.validate(memory, parallel);
   for (const ShapePart& part : shapes_) part.validate(memory, parallel);
+  motion_.validate(memory, parallel);
 }
 
 }  // namespace kiwami

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/motion_part.h"
 #include "core/scene_instances.h"
 #include "core/shape_part.h"
 #include "core/user_geometry.h"
@@ -39,7 +40,8 @@ class SceneParts {
   ShapePart shapes_[3] = {ShapePart(ShapeKind::kSphere), ShapePart(ShapeKind::kDisc),
                           ShapePart(ShapeKind::kCurve)};
   UserPart user_;
-  ScenePart views_[5];
+  MotionTree motion_;
+  ScenePart views_[6];
   uint32_t count_ = 0;
 };
 

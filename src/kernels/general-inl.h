@@ -6,6 +6,7 @@
 
 #include "kernels/answers-inl.h"
 #include "kernels/general-list-inl.h"
+#include "kernels/motion-inl.h"
 #include "kernels/shape-leaf-inl.h"
 #include "kernels/user-leaf-inl.h"
 #include "wide/instance_part.h"
@@ -113,6 +114,16 @@ struct GeneralTraversal {
                              widen_ray(ray), query.best_bound};
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
+      case PartKind::kMovingTriangles: {
+        const auto& motion = *static_cast<const MotionPart*>(part.data);
+        TimePlace place;
+        if (!place_in_time(motion.time, ray.time, place)) return false;
+        query.set_level(motion.scene, ready, query.reach());
+        const auto* const bounds = reinterpret_cast<const MotionBounds<N>*>(motion.bounds);
+        MotionVisitor visitor{query,    motion,         bounds + place.segment * motion.node_count,
+                              ray.time, place.fraction, query.best_bound};
+        return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
+      }
       case PartKind::kUser: {
         UserVisitor visitor{query, *static_cast<const UserSource*>(part.data), ready, ray,
                             query.best_bound};
@@ -184,6 +195,31 @@ struct GeneralTraversal {
                 crossing.t, crossing.shape.view->geometry_id, crossing.shape.primitive,
                 [&](kiwami_hit& hit) { describe_crossing(source, ray, crossing, hit); });
           });
+      best_bound = query.best_bound;
+      return is_done;
+    }
+  };
+
+  /// Tests the moving triangles in the leaves of a part, at the time of the ray.
+  struct MotionVisitor {
+    static constexpr bool kOrdered = Query::kOrdered;
+
+    Query& query;
+    const MotionPart& motion;
+    const MotionBounds<N>* bounds;  ///< of the segment of time
+    float time, fraction;
+    float best_bound;
+
+    uint32_t test_boxes(ChildReference node, const SlabRay<N>& slabs, vfloat<N>& entry) const {
+      return test_moving_boxes(bounds[node.node_offset() / sizeof(WideNode<N>)], fraction, slabs,
+                               best_bound, entry);
+    }
+
+    bool visit_block(const TreeView& tree, ChildReference reference, Probe& probe) {
+      LeafBlock<N> frozen;
+      const uint32_t lanes = freeze_leaf<N>(motion, index_leaf_at<N>(tree.memory, reference),
+                                            reference.mask(), time, frozen);
+      const bool is_done = query.visit_leaf(frozen, lanes, probe);
       best_bound = query.best_bound;
       return is_done;
     }

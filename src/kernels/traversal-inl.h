@@ -108,7 +108,13 @@ __attribute__((always_inline)) inline bool advance(const TreeView& tree, const S
     probe.on_node();
     const WideNode<N>& node = node_at<N>(tree.memory, current.subtree);
     vfloat<N> entry;
-    const uint32_t hits = test_boxes(node, ray, query.best_bound, entry) & current.subtree.mask();
+    uint32_t hits;
+    // Some know better where the boxes are.
+    if constexpr (requires { query.test_boxes(current.subtree, ray, entry); }) {
+      hits = query.test_boxes(current.subtree, ray, entry) & current.subtree.mask();
+    } else {
+      hits = test_boxes(node, ray, query.best_bound, entry) & current.subtree.mask();
+    }
     if (hits != 0) {
       float entries[N];
       store(entries, entry);

@@ -116,7 +116,7 @@ struct GeometryRange {
 };
 
 /// What the leaves of a part's tree hold.
-enum class PartKind : uint32_t { kInstances, kShapes, kUser };
+enum class PartKind : uint32_t { kInstances, kShapes, kUser, kMovingTriangles };
 
 /// A tree of a scene beside that of its triangles, with leaves of ids. Plain data.
 struct ScenePart {

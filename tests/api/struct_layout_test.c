@@ -134,6 +134,25 @@ static void check_shapes(void) {
   FIELD(kiwami_curves_desc, reserved, 76);
 }
 
+static void check_moving_mesh(void) {
+  SIZE(kiwami_moving_mesh_desc, 96);
+  FIELD(kiwami_moving_mesh_desc, struct_size, 0);
+  FIELD(kiwami_moving_mesh_desc, flags, 4);
+  FIELD(kiwami_moving_mesh_desc, vertices, 8);
+  FIELD(kiwami_moving_mesh_desc, vertex_offset, 16);
+  FIELD(kiwami_moving_mesh_desc, vertex_stride, 24);
+  FIELD(kiwami_moving_mesh_desc, vertex_count, 32);
+  FIELD(kiwami_moving_mesh_desc, step_stride, 40);
+  FIELD(kiwami_moving_mesh_desc, indices, 48);
+  FIELD(kiwami_moving_mesh_desc, index_offset, 56);
+  FIELD(kiwami_moving_mesh_desc, index_stride, 64);
+  FIELD(kiwami_moving_mesh_desc, triangle_count, 72);
+  FIELD(kiwami_moving_mesh_desc, step_count, 80);
+  FIELD(kiwami_moving_mesh_desc, time_begin, 84);
+  FIELD(kiwami_moving_mesh_desc, time_end, 88);
+  FIELD(kiwami_moving_mesh_desc, mask, 92);
+}
+
 static void check_user_geometry(void) {
   SIZE(kiwami_user_hit, 32);
   FIELD(kiwami_user_hit, t, 0);
@@ -621,6 +640,7 @@ int main(void) {
     check_device_and_mesh();
     check_shapes();
     check_user_geometry();
+    check_moving_mesh();
     check_fields();
     check_bvh_desc();
     check_light_descs();

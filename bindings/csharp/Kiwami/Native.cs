@@ -569,6 +569,26 @@ internal unsafe struct kiwami_light_query {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_moving_mesh_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr vertices;
+  public ulong vertex_offset;
+  public ulong vertex_stride;
+  public ulong vertex_count;
+  public ulong step_stride;
+  public IntPtr indices;
+  public ulong index_offset;
+  public ulong index_stride;
+  public ulong triangle_count;
+  public uint step_count;
+  public float time_begin;
+  public float time_end;
+  public uint mask;
+  public const int Size = 96;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_opacity_desc {
   public uint struct_size;
   public uint format;
@@ -822,6 +842,8 @@ internal static class Native {
   public const uint KIWAMI_RECEIVER_BOTH_SIDES = 1;
   public const uint KIWAMI_LIGHT_METHOD_TREE = 0;
   public const uint KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
+  public const uint KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
+  public const uint KIWAMI_MAX_TIME_STEPS = 129;
   public const uint KIWAMI_OPACITY_TRANSPARENT = 0;
   public const uint KIWAMI_OPACITY_OPAQUE = 1;
   public const uint KIWAMI_OPACITY_UNKNOWN_TRANSPARENT = 2;
@@ -1092,6 +1114,12 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_light_pdf(IntPtr tree, IntPtr receivers, UIntPtr receiver_stride, IntPtr lights, UIntPtr light_stride, IntPtr probabilities, UIntPtr probability_stride, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_moving_mesh_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_moving_mesh_create(IntPtr device, IntPtr desc, IntPtr geometry);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_opacity_desc_init(IntPtr desc, UIntPtr size);

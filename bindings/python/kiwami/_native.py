@@ -128,6 +128,8 @@ KIWAMI_LIGHT_BUILDER_OCTANTS = 1
 KIWAMI_RECEIVER_BOTH_SIDES = 1
 KIWAMI_LIGHT_METHOD_TREE = 0
 KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1
+KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1
+KIWAMI_MAX_TIME_STEPS = 129
 KIWAMI_OPACITY_TRANSPARENT = 0
 KIWAMI_OPACITY_OPAQUE = 1
 KIWAMI_OPACITY_UNKNOWN_TRANSPARENT = 2
@@ -715,6 +717,26 @@ class kiwami_light_query(ctypes.Structure):
     ]
 
 
+class kiwami_moving_mesh_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("vertices", ctypes.c_void_p),
+        ("vertex_offset", ctypes.c_uint64),
+        ("vertex_stride", ctypes.c_uint64),
+        ("vertex_count", ctypes.c_uint64),
+        ("step_stride", ctypes.c_uint64),
+        ("indices", ctypes.c_void_p),
+        ("index_offset", ctypes.c_uint64),
+        ("index_stride", ctypes.c_uint64),
+        ("triangle_count", ctypes.c_uint64),
+        ("step_count", ctypes.c_uint32),
+        ("time_begin", ctypes.c_float),
+        ("time_end", ctypes.c_float),
+        ("mask", ctypes.c_uint32),
+    ]
+
+
 class kiwami_opacity_desc(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
@@ -883,6 +905,7 @@ SIZES = {
     kiwami_light_choice: 24,
     kiwami_light_name: 8,
     kiwami_light_query: 16,
+    kiwami_moving_mesh_desc: 96,
     kiwami_opacity_desc: 56,
     kiwami_spheres_desc: 48,
     kiwami_discs_desc: 72,
@@ -1262,6 +1285,14 @@ def declare(library):
         ctypes.c_void_p,
         ctypes.c_size_t,
         ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_moving_mesh_desc_init.restype = ctypes.c_int32
+    library.kiwami_moving_mesh_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_moving_mesh_create.restype = ctypes.c_int32
+    library.kiwami_moving_mesh_create.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
         ctypes.c_void_p,
     ]
     library.kiwami_opacity_desc_init.restype = ctypes.c_int32

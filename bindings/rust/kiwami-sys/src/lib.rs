@@ -132,6 +132,8 @@ pub const KIWAMI_LIGHT_BUILDER_OCTANTS: u32 = 1;
 pub const KIWAMI_RECEIVER_BOTH_SIDES: u32 = 1;
 pub const KIWAMI_LIGHT_METHOD_TREE: u32 = 0;
 pub const KIWAMI_LIGHT_QUERY_CALLING_THREAD: u32 = 1;
+pub const KIWAMI_MOVING_MESH_SHARE_BUFFERS: u32 = 1;
+pub const KIWAMI_MAX_TIME_STEPS: u32 = 129;
 pub const KIWAMI_OPACITY_TRANSPARENT: u32 = 0;
 pub const KIWAMI_OPACITY_OPAQUE: u32 = 1;
 pub const KIWAMI_OPACITY_UNKNOWN_TRANSPARENT: u32 = 2;
@@ -770,6 +772,27 @@ const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 16);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct kiwami_moving_mesh_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub vertices: *const c_void,
+    pub vertex_offset: u64,
+    pub vertex_stride: u64,
+    pub vertex_count: u64,
+    pub step_stride: u64,
+    pub indices: *const c_void,
+    pub index_offset: u64,
+    pub index_stride: u64,
+    pub triangle_count: u64,
+    pub step_count: u32,
+    pub time_begin: f32,
+    pub time_end: f32,
+    pub mask: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_moving_mesh_desc>() == 96);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct kiwami_opacity_desc {
     pub struct_size: u32,
     pub format: u32,
@@ -991,6 +1014,8 @@ extern "C" {
     pub fn kiwami_light_tree_get_info(tree: *const kiwami_light_tree, info: *mut kiwami_light_tree_info) -> kiwami_result;
     pub fn kiwami_light_sample(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, choices: *mut kiwami_light_choice, choice_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
     pub fn kiwami_light_pdf(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, lights: *const kiwami_light_name, light_stride: usize, probabilities: *mut f32, probability_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
+    pub fn kiwami_moving_mesh_desc_init(desc: *mut kiwami_moving_mesh_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_moving_mesh_create(device: *mut kiwami_device, desc: *const kiwami_moving_mesh_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
     pub fn kiwami_opacity_desc_init(desc: *mut kiwami_opacity_desc, size: usize) -> kiwami_result;
     pub fn kiwami_triangle_mesh_set_opacity(mesh: *mut kiwami_geometry, desc: *const kiwami_opacity_desc) -> kiwami_result;
     pub fn kiwami_opacity_micro_triangle(u: f32, v: f32, level: u32) -> u32;

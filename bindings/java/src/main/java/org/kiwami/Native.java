@@ -133,6 +133,8 @@ final class Native {
   static final int KIWAMI_RECEIVER_BOTH_SIDES = 1;
   static final int KIWAMI_LIGHT_METHOD_TREE = 0;
   static final int KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
+  static final int KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
+  static final int KIWAMI_MAX_TIME_STEPS = 129;
   static final int KIWAMI_OPACITY_TRANSPARENT = 0;
   static final int KIWAMI_OPACITY_OPAQUE = 1;
   static final int KIWAMI_OPACITY_UNKNOWN_TRANSPARENT = 2;
@@ -668,6 +670,26 @@ final class Native {
     static final int RESERVED = 12;
   }
 
+  /** Offsets of kiwami_moving_mesh_desc. */
+  static final class MovingMeshDesc {
+    static final int STRUCT_BYTES = 96;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int VERTICES = 8;
+    static final int VERTEX_OFFSET = 16;
+    static final int VERTEX_STRIDE = 24;
+    static final int VERTEX_COUNT = 32;
+    static final int STEP_STRIDE = 40;
+    static final int INDICES = 48;
+    static final int INDEX_OFFSET = 56;
+    static final int INDEX_STRIDE = 64;
+    static final int TRIANGLE_COUNT = 72;
+    static final int STEP_COUNT = 80;
+    static final int TIME_BEGIN = 84;
+    static final int TIME_END = 88;
+    static final int MASK = 92;
+  }
+
   /** Offsets of kiwami_opacity_desc. */
   static final class OpacityDesc {
     static final int STRUCT_BYTES = 56;
@@ -972,6 +994,10 @@ final class Native {
   static native int kiwami_light_sample(Pointer tree, Pointer receivers, long receiverStride, Pointer choices, long choiceStride, long count, Pointer query);
 
   static native int kiwami_light_pdf(Pointer tree, Pointer receivers, long receiverStride, Pointer lights, long lightStride, Pointer probabilities, long probabilityStride, long count, Pointer query);
+
+  static native int kiwami_moving_mesh_desc_init(Pointer desc, long size);
+
+  static native int kiwami_moving_mesh_create(Pointer device, Pointer desc, Pointer geometry);
 
   static native int kiwami_opacity_desc_init(Pointer desc, long size);
 

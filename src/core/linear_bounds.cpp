@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/linear_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "math/rounding.h"
+
+namespace kiwami {
+namespace {
+
+/// What a moving vertex and a moving box are off by, in parts of the greatest number that goes into
+/// them: 1 - f, two products and a sum, of which each is rounded once (2^-24), make 3 * 2^-24; the
+/// rest is room for their products and for the padding's own rounding.
+constexpr double kMotionRounding = 0x1p-22;
+/// The same of denormal numbers, which are off by half the least one, 2^-149, each time.
+constexpr double kLeastRounding = 0x1p-146;
+
+/// By so much of a segment a mesh's own time may differ from that of steps that are not its own:
+/// both are quotients and products of three roundings, of numbers that are at most 128 segments.
+constexpr double kTimeRounding = 0x1p-12;
+
+bool are_same(const TimeSteps& a, const TimeSteps& b) {
+  return a.begin == b.begin && a.end == b.end && a.segment_count == b.segment_count;
+}
+
+double time_of(const TimeSteps& steps, double segment) {
+  return steps.begin + (double{steps.end} - steps.begin) * (segment / steps.segment_count);
+}
+
+/// Widens a box by the rounding of its coordinates and of boxes of the scene's extent.
+void pad(Bounds& box, const Bounds& extent) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double greatest =
+        std::max(std::fabs(double{extent.lower[axis]}), std::fabs(double{extent.upper[axis]}));
+    const double width = double{extent.upper[axis]} - extent.lower[axis];
+    const double padding = kMotionRounding * (greatest + width) + kLeastRounding;
+    box.lower[axis] = round_down(box.lower[axis] - padding);
+    box.upper[axis] = round_up(box.upper[axis] + padding);
+  }
+}
+
+/// Adds where the triangle is at a place among its mesh's steps, 0 to segment_count.
+void extend_at(Bounds& box, const MovingMeshView& mesh, uint32_t primitive, double place) {
+  const auto step = std::min(static_cast<uint32_t>(place), mesh.time.segment_count - 1);
+  const double fraction = place - step;
+  Vec3f a[3], b[3];
+  corners_at(mesh, primitive, step, a);
+  corners_at(mesh, primitive, step + 1, b);
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double at = (1.0 - fraction) * a[k][axis] + fraction * b[k][axis];
+      box.lower[axis] = min_keep(box.lower[axis], round_down(at));
+      box.upper[axis] = max_keep(box.upper[axis], round_up(at));
+    }
+  }
+}
+
+/// Where the triangle is at any time of a segment of other steps.
+Bounds swept_box(const MovingMeshView& mesh, uint32_t primitive, const TimeSteps& steps,
+                 uint32_t segment) {
+  const double count = mesh.time.segment_count;
+  const auto place_of = [&](double time) {
+    return (time - mesh.time.begin) / (double{mesh.time.end} - mesh.time.begin) * count;
+  };
+  const double first = place_of(time_of(steps, segment - kTimeRounding));
+  const double last = place_of(time_of(steps, segment + 1.0 + kTimeRounding));
+  Bounds box = Bounds::empty();
+  if (last < 0.0 || first > count) return box;
+  extend_at(box, mesh, primitive, std::max(first, 0.0));
+  extend_at(box, mesh, primitive, std::min(last, count));
+  for (double key = std::ceil(std::max(first, 0.0)); key <= std::min(last, count); key += 1.0) {
+    box.extend(box_at(mesh, primitive, static_cast<uint32_t>(key)));
+  }
+  return box;
+}
+
+}  // namespace
+
+void corners_at(const MovingMeshView& mesh, uint32_t primitive, uint32_t step, Vec3f corner[3]) {
+  uint32_t index[3] = {3 * primitive, 3 * primitive + 1, 3 * primitive + 2};
+  if (mesh.indices) {
+    std::memcpy(index, mesh.indices + primitive * mesh.index_stride, sizeof index);
+  }
+  for (int k = 0; k < 3; ++k) {
+    std::memcpy(&corner[k], mesh.vertices + step * mesh.step_stride + index[k] * mesh.vertex_stride,
+                sizeof(Vec3f));
+  }
+}
+
+Bounds box_at(const MovingMeshView& mesh, uint32_t primitive, uint32_t step) {
+  Vec3f corner[3];
+  corners_at(mesh, primitive, step, corner);
+  Bounds box = Bounds::empty();
+  for (const Vec3f& vertex : corner) box.extend(vertex);
+  return box;
+}
+
+bool place_in_time(const TimeSteps& steps, float time, TimePlace& place) {
+  if (!(steps.begin <= time && time <= steps.end)) return false;
+  const float count = static_cast<float>(steps.segment_count);
+  const float s = (time - steps.begin) / (steps.end - steps.begin) * count;
+  place.segment = static_cast<uint32_t>(std::min(s, count - 1.0f));
+  place.fraction = s - static_cast<float>(place.segment);
+  return true;
+}
+
+void corners_at(const MovingMeshView& mesh, uint32_t primitive, const TimePlace& place,
+                Vec3f corner[3]) {
+  Vec3f a[3], b[3];
+  corners_at(mesh, primitive, place.segment, a);
+  corners_at(mesh, primitive, place.segment + 1, b);
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      corner[k][axis] = (1.0f - place.fraction) * a[k][axis] + place.fraction * b[k][axis];
+    }
+  }
+}
+
+LinearBounds linear_bounds_of(const MovingMeshView& mesh, uint32_t primitive,
+                              const TimeSteps& steps, uint32_t segment, const Bounds& extent) {
+  LinearBounds bounds;
+  if (are_same(mesh.time, steps)) {
+    bounds = {box_at(mesh, primitive, segment), box_at(mesh, primitive, segment + 1)};
+  } else {
+    bounds.start = bounds.end = swept_box(mesh, primitive, steps, segment);
+    if (bounds.start.is_empty()) return bounds;
+  }
+  pad(bounds.start, extent);
+  pad(bounds.end, extent);
+  return bounds;
+}
+
+}  // namespace kiwami

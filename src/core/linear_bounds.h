@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Boxes that move linearly over a segment of time, around triangles that move.
+#pragma once
+
+#include "math/bounds.h"
+#include "wide/motion_part.h"
+
+namespace kiwami {
+
+/// A box at the start and at the end of a segment; between them it is interpolated.
+struct LinearBounds {
+  Bounds start = Bounds::empty(), end = Bounds::empty();
+
+  void extend(const LinearBounds& other) {
+    start.extend(other.start);
+    end.extend(other.end);
+  }
+};
+
+/// The corners of a triangle at a step.
+void corners_at(const MovingMeshView& mesh, uint32_t primitive, uint32_t step, Vec3f corner[3]);
+
+/// The box of a triangle at a step.
+Bounds box_at(const MovingMeshView& mesh, uint32_t primitive, uint32_t step);
+
+/// As kernels/motion-inl.h: false where a time lies outside.
+bool place_in_time(const TimeSteps& steps, float time, TimePlace& place);
+
+/// The corners of a triangle at a place in its mesh's time, as the kernels compute them.
+void corners_at(const MovingMeshView& mesh, uint32_t primitive, const TimePlace& place,
+                Vec3f corner[3]);
+
+/// Where a triangle is during a segment of steps that need not be its mesh's own. Empty where it
+/// does not exist then. The boxes have room for all rounding of vertices and boxes at a time, in a
+/// scene that reaches as far as extent.
+LinearBounds linear_bounds_of(const MovingMeshView& mesh, uint32_t primitive,
+                              const TimeSteps& steps, uint32_t segment, const Bounds& extent);
+
+}  // namespace kiwami

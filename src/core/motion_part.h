@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/moving_mesh.h"
+#include "core/part_tree.h"
+#include "wide/motion_part.h"
+
+namespace kiwami {
+
+/// The moving triangles of a scene, the tree over them, and its boxes at all times.
+class MotionTree {
+ public:
+  MotionTree() = default;
+  MotionTree(const MotionTree&) = delete;
+  MotionTree& operator=(const MotionTree&) = delete;
+
+  /// Of the moving meshes among count geometries, by rising geometry_id. Throws Error.
+  void build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan);
+
+  /// Points into this object.
+  ScenePart view() const;
+  /// Its bounds hold the triangles at all times.
+  const PartTree& tree() const { return tree_; }
+  /// Triangles of all these meshes, skipped ones included.
+  size_t numbered_count() const { return numbered_count_; }
+
+  /// Checks every invariant of the tree, and the boxes at and between all steps; throws
+  /// Error(VALIDATION or OUT_OF_MEMORY).
+  void validate(Memory& memory, const Parallel& parallel) const;
+
+ private:
+  void number(const AttachedGeometry* geometries, size_t count, Memory& memory);
+  /// The mean boxes of those triangles that can be hit; extent becomes the box of all at all times.
+  Array<BuildPrimitive> collect(Memory& memory, const Parallel& parallel, Bounds& extent) const;
+  template <int N>
+  void fill_bounds(Memory& memory, const Parallel& parallel);
+  template <int N>
+  void check_bounds(const Parallel& parallel) const;
+
+  Array<MovingMeshView> meshes_;
+  Array<GeometryRange> ranges_;
+  Array<unsigned char> bounds_;
+  MotionPart data_{};
+  size_t numbered_count_ = 0;
+  PartTree tree_;
+};
+
+}  // namespace kiwami
