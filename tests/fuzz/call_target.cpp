@@ -85,6 +85,12 @@ class Session {
     return kNumbers[input_.below(std::size(kNumbers))];
   }
 
+  /// A struct_size that is wrong but not beyond what is there, or so large that nothing is read.
+  uint32_t wrong_size(size_t size) {
+    const uint32_t sizes[] = {0, 1, 7, static_cast<uint32_t>(size) - 4, 0x10001, 0xFFFFFFFF};
+    return sizes[input_.below(std::size(sizes))];
+  }
+
   bool rarely() { return input_.below(16) == 0; }
   uint32_t slot() { return input_.below(kSlots); }
   kiwami_scene* scene() { return rarely() ? nullptr : scenes_[slot()].get(); }
@@ -193,7 +199,7 @@ class Session {
     desc.points = points.data();
     desc.sphere_count = count;
     if (rarely()) desc.point_stride = 1 + input_.below(15);
-    if (rarely()) desc.struct_size = whole();
+    if (rarely()) desc.struct_size = wrong_size(sizeof desc);
     if (rarely()) desc.sphere_count = uint64_t{1} << (32 + input_.below(30));
     kiwami_geometry* made = nullptr;
     check(kiwami_spheres_create(device(), &desc, &made));
@@ -277,7 +283,7 @@ class Session {
     if (input_.below(2) == 0) return nullptr;
     kiwami_query_init(&query_, sizeof query_);
     query_.flags = rarely() ? whole() : input_.below(2);
-    if (rarely()) query_.struct_size = whole();
+    if (rarely()) query_.struct_size = wrong_size(sizeof query_);
     return &query_;
   }
 
@@ -318,8 +324,8 @@ class Session {
     }
     if (count != 0) answers.t = {&hits[0].t, sizeof(kiwami_hit)};
     if (count != 0 && rarely()) answers.primitive_id = {&hits[0].primitive_id, sizeof(kiwami_hit)};
-    if (rarely()) fields.struct_size = whole();
-    if (rarely()) answers.struct_size = whole() % 64;
+    if (rarely()) fields.struct_size = wrong_size(sizeof fields);
+    if (rarely()) answers.struct_size = wrong_size(sizeof answers);
     check(kiwami_closest_hit_fields(scene(), rarely() ? nullptr : &fields,
                                     rarely() ? nullptr : &answers, count, query()));
   }
