@@ -216,9 +216,10 @@ struct GeneralTraversal {
     }
 
     bool visit_block(const TreeView& tree, ChildReference reference, Probe& probe) {
-      LeafBlock<N> frozen;
-      const uint32_t lanes = freeze_leaf<N>(motion, index_leaf_at<N>(tree.memory, reference),
-                                            reference.mask(), time, frozen);
+      const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, reference);
+      GatheredBlock<N> frozen;
+      frozen.source = block.id;
+      const uint32_t lanes = freeze_leaf<N>(motion, block, reference.mask(), time, frozen);
       const bool is_done = query.visit_leaf(frozen, lanes, probe);
       best_bound = query.best_bound;
       return is_done;
