@@ -41,6 +41,9 @@ enum {
   KIWAMI_LIGHT_TWO_SIDED = 1u << 0
 };
 
+/* The most choices of a receiver. */
+#define KIWAMI_LIGHT_MAX_CHOICES 64
+
 /* A light. What its type does not name is not read. 96 bytes, at any address. */
 typedef struct kiwami_light {
   uint32_t type;      /* KIWAMI_LIGHT_* */
@@ -100,6 +103,12 @@ enum {
   KIWAMI_LIGHT_BUILDER_OCTANTS = 1
 };
 
+enum {
+  /* Build what KIWAMI_LIGHT_METHOD_LAZY_ROULETTE needs, too: 100 to 200 bytes more for each light.
+   */
+  KIWAMI_LIGHT_TREE_WITH_ROULETTE = 1u << 0
+};
+
 /* How a set of lights is made. */
 typedef struct kiwami_light_tree_desc {
   uint32_t struct_size;      /* bytes of this struct, set by kiwami_light_tree_desc_init */
@@ -109,6 +118,8 @@ typedef struct kiwami_light_tree_desc {
   float distant_probability; /* with which distant lights and environments are chosen from where
                               * others can contribute, too: above 0, below 1. 0: n / (n + 1) for n
                               * of them. */
+  uint32_t flags;            /* KIWAMI_LIGHT_TREE_* */
+  uint32_t reserved;         /* 0 */
 } kiwami_light_tree_desc;
 
 /* The numbers of a committed set of lights. */
@@ -164,7 +175,23 @@ typedef struct kiwami_light_name {
 
 enum {
   /* Down the tree, one child of a node at a time: one choice (Conty Estevez & Kulla 2018). */
-  KIWAMI_LIGHT_METHOD_TREE = 0
+  KIWAMI_LIGHT_METHOD_TREE = 0,
+  /* By power alone, whatever the receiver is: one choice. To compare with. */
+  KIWAMI_LIGHT_METHOD_POWER = 1,
+  /* Down the tree, taking all children of a node in place of one where its lights are likely to
+   * contribute differently: up to max_choices choices, each light at most once. The estimate is the
+   * sum over the choices of contribution / probability. */
+  KIWAMI_LIGHT_METHOD_TREE_SPLITTING = 2,
+  /* Stochastic lightcuts: the cluster that can contribute most is opened, until there are
+   * max_choices of them (or all are lights), and of each one light is chosen. */
+  KIWAMI_LIGHT_METHOD_LIGHTCUTS = 3,
+  /* Hierarchical Russian roulette, the lazy variant: each light is accepted or not for itself, in
+   * proportion to its energy and the cosine at the receiver over the squared distance, capped at 1.
+   * About half of max_choices are accepted; there may be none. Where more than max_choices are
+   * accepted, that many of them are kept, with probabilities that are less in proportion (so the
+   * estimate stays unbiased), while kiwami_light_pdf gives that of being accepted. Of an instance
+   * that is accepted, one light is chosen by power. */
+  KIWAMI_LIGHT_METHOD_LAZY_ROULETTE = 4
 };
 
 enum {
@@ -177,6 +204,11 @@ typedef struct kiwami_light_query {
   uint32_t struct_size; /* bytes of this struct, set by kiwami_light_query_init */
   uint32_t flags;       /* KIWAMI_LIGHT_QUERY_* */
   uint32_t method;      /* KIWAMI_LIGHT_METHOD_* */
+  uint32_t max_choices; /* the choices that a receiver gets at most, and has room for; 1 (the
+                         * default), or with TREE_SPLITTING, LIGHTCUTS and LAZY_ROULETTE up to
+                         * KIWAMI_LIGHT_MAX_CHOICES */
+  float threshold;      /* of TREE_SPLITTING, 0 to 1: 0 splits nothing, 1 splits all that there is
+                         * room for; 0.5 */
   uint32_t reserved;    /* 0 */
 } kiwami_light_query;
 
@@ -281,14 +313,17 @@ KIWAMI_API kiwami_result kiwami_light_tree_get_info(const kiwami_light_tree* tre
                                                     kiwami_light_tree_info* info);
 
 /* Lets each receiver choose a light, in proportion to what the nodes of the tree and the lights can
- * contribute. The probabilities of all lights sum to 1, or to 0 where none can contribute.
+ * contribute (method TREE). The probabilities of all lights sum to 1, or to 0 where none can
+ * contribute.
  *   receivers  count receivers, receiver_stride bytes apart (0: sizeof(kiwami_light_receiver));
  *              NULL only if count is 0
- *   choices    receives count choices, choice_stride bytes apart (0: sizeof(kiwami_light_choice));
- *              may not overlap the receivers
+ *   choices    receives count * max_choices choices, choice_stride bytes apart (0:
+ *              sizeof(kiwami_light_choice)): those of receiver i are i * max_choices on, first the
+ *              ones that were made. May not overlap the receivers.
  *   query      NULL for the defaults
  * Large batches run on the device's threads. Nothing is allocated.
- *   errors     INVALID_ARGUMENT: tree is NULL, a field of query; INVALID_STATE: never committed;
+ *   errors     INVALID_ARGUMENT: tree is NULL, a field of query; INVALID_STATE: never committed, or
+ *              LAZY_ROULETTE of a set without KIWAMI_LIGHT_TREE_WITH_ROULETTE;
  *              CALLBACK: the runner failed. With KIWAMI_DEVICE_VALIDATE also INVALID_ARGUMENT:
  * NULL, a stride too small, an extent that overflows. [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_light_sample(const kiwami_light_tree* tree,
@@ -297,8 +332,8 @@ KIWAMI_API kiwami_result kiwami_light_sample(const kiwami_light_tree* tree,
                                              size_t choice_stride, size_t count,
                                              const kiwami_light_query* query);
 
-/* The probability with which each receiver would choose a light: to the bit that of
- * kiwami_light_sample where it chose it.
+/* The probability with which a light is among the choices of each receiver: to the bit that of
+ * kiwami_light_sample, by the same query, where it is.
  *   receivers      as in kiwami_light_sample; their random numbers are not read
  *   lights         count names, light_stride bytes apart (0: sizeof(kiwami_light_name)). A name of
  * no light has probability 0. probabilities  receives count floats, probability_stride bytes apart

@@ -39,7 +39,13 @@ kiwami_light_instance_desc default_instance() {
 }
 
 constexpr kiwami_light_tree_desc kDefaultTree{};
-constexpr kiwami_light_query kDefaultQuery{};
+
+kiwami_light_query default_query() {
+  kiwami_light_query query{};
+  query.max_choices = 1;
+  query.threshold = 0.5f;
+  return query;
+}
 
 /// Runs the body of a call on a tree, in the float environment that results are defined in.
 template <typename Body>
@@ -72,6 +78,11 @@ kiwami_light_tree_desc read_tree(const kiwami_light_tree_desc* given) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "desc.builder is %u, expected one of KIWAMI_LIGHT_BUILDER_*", desc.builder);
   }
+  if (desc.flags & ~uint32_t{KIWAMI_LIGHT_TREE_WITH_ROULETTE}) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "desc.flags is 0x%x, expected KIWAMI_LIGHT_TREE_* bits", desc.flags);
+  }
+  check_reserved("desc.reserved", desc.reserved);
   if (!(desc.distant_probability >= 0.0f && desc.distant_probability < 1.0f)) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "desc.distant_probability is %g, expected at least 0 and below 1",
@@ -163,19 +174,60 @@ LightInstance read_instance(const LightTree& tree, const kiwami_light_instance_d
   return instance;
 }
 
-bool is_on_calling_thread(const kiwami_light_query* given) {
-  if (!given) return false;
-  const kiwami_light_query query = read_descriptor(given, kMinimumDescSize, "query", kDefaultQuery);
+void check_choices(const kiwami_light_query& query) {
+  const bool has_many = query.method == KIWAMI_LIGHT_METHOD_TREE_SPLITTING ||
+                        query.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS ||
+                        query.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE;
+  const uint32_t most = has_many ? KIWAMI_LIGHT_MAX_CHOICES : 1;
+  if (query.max_choices < 1 || query.max_choices > most) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "query.max_choices is %u, expected at least 1 and at most %u for this method",
+                query.max_choices, most);
+  }
+  if (!(query.threshold >= 0.0f && query.threshold <= 1.0f)) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "query.threshold is %g, expected 0 to 1",
+                static_cast<double>(query.threshold));
+  }
+}
+
+void check_roulette(const kiwami_light_query& query, const CommittedLights& lights) {
+  if (query.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE && !lights.has_roulette()) {
+    throw Error(KIWAMI_ERROR_INVALID_STATE,
+                "query.method is KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, but the set was made without "
+                "KIWAMI_LIGHT_TREE_WITH_ROULETTE, expected it in the flags of its description");
+  }
+}
+
+kiwami_light_query read_query(const kiwami_light_query* given) {
+  if (!given) return default_query();
+  const kiwami_light_query query =
+      read_descriptor(given, kMinimumDescSize, "query", default_query());
   if (query.flags & ~uint32_t{KIWAMI_LIGHT_QUERY_CALLING_THREAD}) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "query.flags is 0x%x, expected KIWAMI_LIGHT_QUERY_* bits", query.flags);
   }
-  if (query.method != KIWAMI_LIGHT_METHOD_TREE) {
+  if (query.method > KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "query.method is %u, expected one of KIWAMI_LIGHT_METHOD_*", query.method);
   }
+  check_choices(query);
   check_reserved("query.reserved", query.reserved);
-  return query.flags != 0;
+  return query;
+}
+
+LightMethod method_of(const kiwami_light_query& query) {
+  // With room for one choice nothing can be split.
+  const bool has_tree = query.method != KIWAMI_LIGHT_METHOD_POWER;
+  const uint32_t method =
+      has_tree && query.max_choices == 1 ? uint32_t{KIWAMI_LIGHT_METHOD_TREE} : query.method;
+  return {method, query.flags != 0};
+}
+
+/// (1 / (1 + deviation))^(1/4) below the threshold, as a limit of the deviation.
+double split_limit_of(float threshold) {
+  const double square = static_cast<double>(threshold) * static_cast<double>(threshold);
+  const double fourth = square * square;
+  return fourth > 0.0 ? 1.0 / fourth - 1.0 : std::numeric_limits<double>::infinity();
 }
 
 size_t stride_or(size_t stride, size_t size) { return stride ? stride : size; }
@@ -201,7 +253,7 @@ kiwami_result kiwami_light_instance_desc_init(kiwami_light_instance_desc* desc, 
 
 kiwami_result kiwami_light_query_init(kiwami_light_query* query, size_t size) {
   return guarded(nullptr,
-                 [&] { init_descriptor(query, size, kMinimumDescSize, "query", kDefaultQuery); });
+                 [&] { init_descriptor(query, size, kMinimumDescSize, "query", default_query()); });
 }
 
 kiwami_result kiwami_light_tree_create(kiwami_device* device, const kiwami_light_tree_desc* desc,
@@ -300,12 +352,14 @@ kiwami_result kiwami_light_sample(const kiwami_light_tree* tree,
   return guarded(device_of(tree), [&] {
     check_not_null(tree, "tree");
     const LightTree& object = *object_of(tree);
-    const CommittedLights& committed = committed_of(object);
-    const bool on_calling_thread = is_on_calling_thread(query);
+    const kiwami_light_query checked = read_query(query);
+    check_roulette(checked, committed_of(object));
     if (count == 0) return;
     if (object.device().validates_arguments()) {
       check_array("receivers", receivers, receiver_stride, sizeof(kiwami_light_receiver), count);
-      check_array("choices", choices, choice_stride, sizeof(kiwami_light_choice), count);
+      check_count("count", count, std::numeric_limits<size_t>::max() / checked.max_choices);
+      check_array("choices", choices, choice_stride, sizeof(kiwami_light_choice),
+                  count * checked.max_choices);
     }
     const LightBatch batch{reinterpret_cast<const unsigned char*>(receivers),
                            stride_or(receiver_stride, sizeof(kiwami_light_receiver)),
@@ -313,9 +367,11 @@ kiwami_result kiwami_light_sample(const kiwami_light_tree* tree,
                            0,
                            reinterpret_cast<unsigned char*>(choices),
                            stride_or(choice_stride, sizeof(kiwami_light_choice)),
-                           count};
-    run_light_kernel(object.device().parallel(), committed.view(), object.kernels().sample, batch,
-                     on_calling_thread);
+                           count,
+                           checked.max_choices,
+                           split_limit_of(checked.threshold),
+                           checked.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS};
+    sample_lights(object, method_of(checked), batch);
   });
 }
 
@@ -327,8 +383,8 @@ kiwami_result kiwami_light_pdf(const kiwami_light_tree* tree,
   return guarded(device_of(tree), [&] {
     check_not_null(tree, "tree");
     const LightTree& object = *object_of(tree);
-    const CommittedLights& committed = committed_of(object);
-    const bool on_calling_thread = is_on_calling_thread(query);
+    const kiwami_light_query checked = read_query(query);
+    check_roulette(checked, committed_of(object));
     if (count == 0) return;
     if (object.device().validates_arguments()) {
       check_array("receivers", receivers, receiver_stride, sizeof(kiwami_light_receiver), count);
@@ -341,9 +397,11 @@ kiwami_result kiwami_light_pdf(const kiwami_light_tree* tree,
                            stride_or(light_stride, sizeof(kiwami_light_name)),
                            reinterpret_cast<unsigned char*>(probabilities),
                            stride_or(probability_stride, sizeof(float)),
-                           count};
-    run_light_kernel(object.device().parallel(), committed.view(), object.kernels().pdf, batch,
-                     on_calling_thread);
+                           count,
+                           checked.max_choices,
+                           split_limit_of(checked.threshold),
+                           checked.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS};
+    find_light_probabilities(object, method_of(checked), batch);
   });
 }
 

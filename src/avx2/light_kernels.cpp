@@ -2,7 +2,7 @@
 #include "avx2/simd.h"
 // The vocabulary comes first: the kernels are written over it.
 #include "kernels/kernels.h"
-#include "kernels/light-sample-inl.h"
+#include "kernels/light-split-inl.h"
 
 namespace kiwami {
 namespace KIWAMI_ISA {

@@ -26,6 +26,7 @@ struct LightPoint {
   bool has_normal;
   bool has_segment;
   bool takes_both_sides;
+  bool is_lightcut;  ///< children are compared as stochastic lightcuts do
   uint64_t link_mask;
 };
 
@@ -219,6 +220,40 @@ KIWAMI_LIGHT_INLINE vfloat<N> importance_at_point(const LightNode<N>& node, cons
   const vfloat<N> energy = load<N>(node.energy);
   const vfloat<N> importance = energy / sight.clamped_square * emission * cosine;
   return positive_where_alive(importance, energy, emission, cosine);
+}
+
+/// What stochastic lightcuts compare children by: energy times a bound of the cosines, over the
+/// squared distances of the nearest and of the farthest point of the box (C. Yuksel, "Stochastic
+/// Lightcuts", HPG 2019). The bound at the receiver is the paper's: the greatest height of the box
+/// over the receiver's plane, seen at the least tangential distance; it is 0 just for what lies
+/// below the plane. The bound at the lights is that of importance_at_point.
+template <int N>
+KIWAMI_LIGHT_INLINE void lightcut_terms(const LightNode<N>& node, const LightPoint& point,
+                                        float least_square, vfloat<N>& near, vfloat<N>& far) {
+  const vfloat<N> zero = broadcast<N>(0.0f);
+  const BoxSight<N> box(node, point, least_square);
+  const Sight<N> sight = sight_of(node, point, dot(box.offset, box.offset), least_square);
+  const vfloat<N> emission = emission_to_point(node, point, box, sight);
+  vfloat<N> cosine = broadcast<N>(1.0f);
+  if (point.has_normal) {
+    vfloat<N> normal[3], gap[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      normal[axis] = broadcast<N>(point.normal[axis]);
+      gap[axis] = copy_sign(max(absolute(box.offset[axis]) - box.half_extent[axis], zero),
+                            box.offset[axis]);
+    }
+    vfloat<N> height = dot(normal, box.offset);
+    if (point.takes_both_sides) height = absolute(height);
+    const vfloat<N> top = box.top(normal, height, point.slack);
+    const vfloat<N> rise = dot(normal, gap);
+    const vfloat<N> tangential = max(dot(gap, gap) - rise * rise, zero);
+    const vfloat<N> reach = square_root(max(tangential + top * top, broadcast<N>(least_square)));
+    cosine = select_negative(top, broadcast<N>(-1.0f), max(top / reach, zero));
+  }
+  const vfloat<N> energy = load<N>(node.energy);
+  const vfloat<N> bound = energy * emission * cosine;
+  near = positive_where_alive(bound / box.nearest / box.nearest, energy, emission, cosine);
+  far = positive_where_alive(bound / box.farthest / box.farthest, energy, emission, cosine);
 }
 
 /// Of all points of a segment: the greatest cosine between the children's axes and the direction

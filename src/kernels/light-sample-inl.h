@@ -23,7 +23,8 @@ constexpr double kGreatestRandom = 1.0 - 0x1p-53;
 template <int N>
 struct LightShares {
   float importance[N];
-  double sum[N];  ///< of the slots up to this one
+  float bound[N];  ///< of what a child contributes at most; of lightcuts alone
+  double sum[N];   ///< of the slots up to this one
 
   double total() const { return sum[N - 1]; }
 };
@@ -48,14 +49,46 @@ inline void sum_up(const LightNode<N>& node, uint64_t link_mask, LightShares<N>&
   }
 }
 
+/// The importances by which stochastic lightcuts choose: the mean of the shares by the nearest and
+/// by the farthest points. Nothing is known of a segment but its importance.
+template <int N>
+inline void store_lightcut(const LightTreeView& tree, const LightNode<N>& node,
+                           const LightPoint& point, LightShares<N>& shares) {
+  vfloat<N> near, far;
+  lightcut_terms(node, point, tree.least_square, near, far);
+  float far_terms[N];
+  store(shares.bound, near);
+  store(far_terms, far);
+  double near_total = 0.0, far_total = 0.0;
+  for (int i = 0; i < N; ++i) {
+    // What is not linked must not take part in the totals.
+    if ((node.link_mask[i] & point.link_mask) == 0) shares.bound[i] = far_terms[i] = 0.0f;
+    near_total += static_cast<double>(shares.bound[i]);
+    far_total += static_cast<double>(far_terms[i]);
+  }
+  for (int i = 0; i < N; ++i) {
+    shares.importance[i] = 0.0f;
+    if (!(shares.bound[i] > 0.0f)) continue;
+    const double mean = static_cast<double>(shares.bound[i]) / near_total +
+                        static_cast<double>(far_terms[i]) / far_total;
+    const float importance = static_cast<float>(mean);
+    shares.importance[i] = importance > kLeastImportance ? importance : kLeastImportance;
+  }
+}
+
 /// The shares of a node by importance; all 0 where nothing can contribute.
 template <int N>
 inline void share_by_importance(const LightTreeView& tree, const LightNode<N>& node,
                                 const LightPoint& point, LightShares<N>& shares) {
+  if (point.is_lightcut && !point.has_segment) {
+    store_lightcut(tree, node, point, shares);
+    return sum_up(node, point.link_mask, shares);
+  }
   const vfloat<N> importance = point.has_segment
                                    ? importance_along_segment(node, point, tree.least_square)
                                    : importance_at_point(node, point, tree.least_square);
   store(shares.importance, importance);
+  store(shares.bound, importance);
   sum_up(node, point.link_mask, shares);
 }
 
@@ -111,7 +144,8 @@ inline bool normalise(float (&a)[3]) {
 }
 
 /// A caller's receiver; false for one that gets no light.
-inline bool read_receiver(const kiwami_light_receiver& receiver, LightPoint& point) {
+inline bool read_receiver(const kiwami_light_receiver& receiver, bool is_lightcut,
+                          LightPoint& point) {
   if (!are_coordinates(receiver.position)) return false;
   if (!are_finite(receiver.normal) || !are_finite(receiver.segment)) return false;
   float end[3];
@@ -124,6 +158,7 @@ inline bool read_receiver(const kiwami_light_receiver& receiver, LightPoint& poi
     has_segment = has_segment || receiver.segment[i] != 0.0f;
   }
   point.slack = 0.0f;
+  point.is_lightcut = is_lightcut;
   point.has_segment = has_segment;
   point.has_normal = normalise(point.normal) && !has_segment;
   point.takes_both_sides = (receiver.flags & KIWAMI_RECEIVER_BOTH_SIDES) != 0;
@@ -201,11 +236,10 @@ struct LightPath {
   double random;
 };
 
-/// Goes down to a leaf. The shares are those of the root, whose total is not 0.
+/// Goes down from a node to a leaf. The shares are those of the node, whose total is not 0.
 template <int N>
-inline void descend(const LightTreeView& tree, const LightPoint& point, LightShares<N>& shares,
-                    LightPath& path) {
-  uint32_t node = 0;
+inline void descend(const LightTreeView& tree, const LightPoint& point, uint32_t node,
+                    LightShares<N>& shares, LightPath& path) {
   for (;;) {
     const uint32_t slot = choose_slot(shares, path.random, path.probability);
     const uint32_t child = node_of<N>(tree, node).child[slot];
@@ -263,17 +297,17 @@ inline void finish(const LightTreeView& tree, const LightPoint& point, LightShar
   const LightPoint local = transformed(point, instance);
   share(instance.tree, node_of<N>(instance.tree, 0), local, shares);
   if (!(shares.total() > 0.0)) return write_none(choice);
-  descend(instance.tree, local, shares, path);
+  descend(instance.tree, local, 0, shares, path);
   choice = {path.leaf, instance_id, instance.tree.user_ids[path.leaf],
             returned_probability(path.probability), path.random};
 }
 
 template <int N>
 inline void sample_one(const LightTreeView& tree, const kiwami_light_receiver& receiver,
-                       kiwami_light_choice& choice) {
+                       bool is_lightcut, kiwami_light_choice& choice) {
   write_none(choice);
   LightPoint point;
-  if (!read_receiver(receiver, point)) return;
+  if (!read_receiver(receiver, is_lightcut, point)) return;
   LightShares<N> shares;
   double total = 0.0;
   if (tree.node_count != 0) {
@@ -291,27 +325,29 @@ inline void sample_one(const LightTreeView& tree, const kiwami_light_receiver& r
   const double rest = 1.0 - distant;
   const double stretched = (random - distant) / rest;
   LightPath path{0, rest, stretched > kGreatestRandom ? kGreatestRandom : stretched};
-  descend(tree, point, shares, path);
+  descend(tree, point, 0, shares, path);
   finish(tree, point, shares, path, choice);
 }
 
-/// Multiplies probability by the shares on the way from the root to a leaf, in that order.
-/// by_energy: whether a root to which nothing can contribute is shared by energy, as it is within
-/// an instance.
+/// Multiplies probability by the shares on the way from a node to a leaf, in that order; 0 for a
+/// leaf that is not below it. by_energy: whether the node is shared by energy if nothing can
+/// contribute: all but the root of the whole tree are.
 template <int N>
-inline double path_probability(const LightTreeView& tree, const LightPoint& point, uint32_t leaf,
-                               bool by_energy, double probability) {
+inline double path_probability(const LightTreeView& tree, const LightPoint& point, uint32_t top,
+                               uint32_t leaf, bool by_energy, double probability) {
   uint32_t slots[kMaxLightDepth];
   uint32_t depth = 0;
-  for (uint32_t slot = tree.leaf_slots[leaf]; slot != kNoLightSlot;) {
+  uint32_t slot = tree.leaf_slots[leaf];
+  for (;;) {
+    if (slot == kNoLightSlot) return 0.0;
     slots[depth++] = slot;
+    if (slot / N == top) break;
     slot = tree.parent_slots[slot / N];
   }
-  if (depth == 0) return 0.0;
   LightShares<N> shares;
   while (depth-- != 0) {
     const LightNode<N>& node = node_of<N>(tree, slots[depth] / N);
-    if (slots[depth] / N == 0 && !by_energy) {
+    if (slots[depth] / N == top && !by_energy) {
       share_by_importance(tree, node, point, shares);
     } else {
       share(tree, node, point, shares);
@@ -323,42 +359,61 @@ inline double path_probability(const LightTreeView& tree, const LightPoint& poin
   return probability;
 }
 
+inline bool is_name_of_light(const LightTreeView& tree, const kiwami_light_name& name) {
+  if (name.instance_id == KIWAMI_INVALID_ID) return name.light_id < tree.light_count;
+  return name.instance_id < tree.instance_count &&
+         name.light_id < tree.instances[name.instance_id].tree.light_count;
+}
+
+/// The share that a distant light has of all of them, whose total is not 0; 0 for others.
+inline double share_of_distant(const LightTreeView& tree, const LightPoint& point,
+                               const kiwami_light_name& name, double total) {
+  if (name.instance_id != KIWAMI_INVALID_ID) return 0.0;
+  for (uint32_t i = 0; i < tree.distant_count; ++i) {
+    if (tree.distant[i].light_id != name.light_id) continue;
+    return static_cast<double>(distant_importance(tree.distant[i], point)) / total;
+  }
+  return 0.0;
+}
+
+/// The probability of a light of the tree below a node of the outer tree (or below one of its
+/// leaves, where top is that).
 template <int N>
-inline double tree_pdf(const LightTreeView& tree, const LightPoint& point,
-                       const kiwami_light_name& name, double probability) {
+inline double tree_pdf(const LightTreeView& tree, const LightPoint& point, uint32_t top,
+                       bool by_energy, const kiwami_light_name& name, double probability) {
   const bool is_in_instance = name.instance_id != KIWAMI_INVALID_ID;
-  if (is_in_instance && name.instance_id >= tree.instance_count) return 0.0;
-  if (!is_in_instance && name.light_id >= tree.light_count) return 0.0;
   const uint32_t leaf = is_in_instance ? tree.light_count + name.instance_id : name.light_id;
-  const double outer = path_probability<N>(tree, point, leaf, false, probability);
-  if (!is_in_instance || !(outer > 0.0)) return outer;
+  if (top & kLightLeafBit) {
+    if (leaf != (top & ~kLightLeafBit)) return 0.0;
+  } else {
+    probability = path_probability<N>(tree, point, top, leaf, by_energy, probability);
+  }
+  if (!is_in_instance || !(probability > 0.0)) return probability;
   const LightInstanceView& instance = tree.instances[name.instance_id];
-  if (name.light_id >= instance.tree.light_count) return 0.0;
-  return path_probability<N>(instance.tree, transformed(point, instance), name.light_id, true,
-                             outer);
+  return path_probability<N>(instance.tree, transformed(point, instance), 0, name.light_id, true,
+                             probability);
 }
 
 template <int N>
 inline float pdf_of(const LightTreeView& tree, const kiwami_light_receiver& receiver,
-                    const kiwami_light_name& name) {
+                    bool is_lightcut, const kiwami_light_name& name) {
   LightPoint point;
-  if (!read_receiver(receiver, point)) return 0.0f;
+  if (!read_receiver(receiver, is_lightcut, point) || !is_name_of_light(tree, name)) return 0.0f;
   const double distant_total = total_distant_importance(tree, point);
-  double total = 0.0;
-  if (tree.node_count != 0 && distant_total > 0.0) {
+  double distant = 0.0;
+  if (distant_total > 0.0) {
     LightShares<N> shares;
-    share_by_importance(tree, node_of<N>(tree, 0), point, shares);
-    total = shares.total();
+    double total = 0.0;
+    if (tree.node_count != 0) {
+      share_by_importance(tree, node_of<N>(tree, 0), point, shares);
+      total = shares.total();
+    }
+    distant = distant_share(tree, distant_total, total);
+    const double own = share_of_distant(tree, point, name, distant_total);
+    if (own > 0.0) return returned_probability(distant * own);
   }
-  const double distant = distant_share(tree, distant_total, total);
-  for (uint32_t i = 0; i < tree.distant_count; ++i) {
-    if (name.instance_id != KIWAMI_INVALID_ID || tree.distant[i].light_id != name.light_id)
-      continue;
-    const double own = static_cast<double>(distant_importance(tree.distant[i], point));
-    return own > 0.0 ? returned_probability(distant * (own / distant_total)) : 0.0f;
-  }
-  if (tree.node_count == 0 || (distant_total > 0.0 && !(total > 0.0))) return 0.0f;
-  const double probability = tree_pdf<N>(tree, point, name, 1.0 - distant);
+  if (tree.node_count == 0 || !(distant < 1.0)) return 0.0f;
+  const double probability = tree_pdf<N>(tree, point, 0, false, name, 1.0 - distant);
   return probability > 0.0 ? returned_probability(probability) : 0.0f;
 }
 
@@ -368,7 +423,7 @@ void sample_batch(const LightTreeView& tree, const LightBatch& batch) {
     kiwami_light_receiver receiver;
     kiwami_light_choice choice;
     __builtin_memcpy(&receiver, batch.receivers + i * batch.receiver_stride, sizeof receiver);
-    sample_one<N>(tree, receiver, choice);
+    sample_one<N>(tree, receiver, batch.is_lightcut, choice);
     __builtin_memcpy(batch.answers + i * batch.answer_stride, &choice, sizeof choice);
   }
 }
@@ -380,14 +435,9 @@ void pdf_batch(const LightTreeView& tree, const LightBatch& batch) {
     kiwami_light_name name;
     __builtin_memcpy(&receiver, batch.receivers + i * batch.receiver_stride, sizeof receiver);
     __builtin_memcpy(&name, batch.names + i * batch.name_stride, sizeof name);
-    const float probability = pdf_of<N>(tree, receiver, name);
+    const float probability = pdf_of<N>(tree, receiver, batch.is_lightcut, name);
     __builtin_memcpy(batch.answers + i * batch.answer_stride, &probability, sizeof probability);
   }
-}
-
-template <int N>
-LightKernels light_kernels_of_width() {
-  return {sample_batch<N>, pdf_batch<N>};
 }
 
 }  // namespace

@@ -20,14 +20,24 @@ struct LightBatch {
   unsigned char* answers;  ///< kiwami_light_choice, or float from pdf
   size_t answer_stride;
   size_t count;
+
+  // Of the methods that make several choices: those of receiver i are answers i * max_choices on,
+  // none where there are fewer.
+  uint32_t max_choices;
+  /// Of adaptive splitting: clusters are split whose relative deviation is at least this.
+  double split_limit;
+  /// Whether children are compared, and cuts are made, as by stochastic lightcuts.
+  bool is_lightcut;
 };
 
 using LightKernel = void (*)(const LightTreeView& tree, const LightBatch& batch);
 
 /// The kernels of one tree width; all null where the ISA has none.
 struct LightKernels {
-  LightKernel sample;  ///< one choice a receiver
-  LightKernel pdf;     ///< the probability with which sample makes it
+  LightKernel sample;        ///< one choice a receiver
+  LightKernel pdf;           ///< the probability with which sample makes it
+  LightKernel sample_split;  ///< adaptive splitting: up to max_choices a receiver
+  LightKernel pdf_split;     ///< the probability with which a light is among them
 };
 
 }  // namespace kiwami

@@ -106,6 +106,7 @@ CommittedLights::CommittedLights(Device& device, const LightInput& input,
     std::memcpy(user_ids_.data(), input.user_ids, user_ids_.bytes());
   }
   collect_distant(input);
+  weigh(input, leaves);
   describe(input);
   // Last, since nothing releases them if something above fails.
   held_ = Array<CommittedLights*>(memory, input.instance_count);
@@ -154,10 +155,12 @@ void CommittedLights::build(const LightInput& input, const LightLeaves& leaves,
       links_ = SaohBuilder::build(leaves, numbers, config, memory, device_->parallel());
     }
   }
+  has_roulette_ = input.has_roulette;
   if (links_.empty()) return;
   const Array<LightCluster> clusters = clusters_of(links_, leaves, memory);
   tree_ = shape ? rewritten(shape->tree_, links_, clusters, memory)
                 : contract(links_, clusters, input.width, leaves.size(), memory);
+  if (has_roulette_) perfect_tree_ = PerfectLightTree(links_, clusters, memory);
   const LightCluster& root = clusters[0];
   info_.power = root.power;
   describe_root(root, view_);
@@ -203,6 +206,72 @@ void CommittedLights::collect_distant(const LightInput& input) {
   }
 }
 
+void CommittedLights::weigh(const LightInput& input, const LightLeaves& leaves) {
+  Memory& memory = device_->memory();
+  Array<double> powers(memory, leaves.size());
+  for (uint32_t leaf = 0; leaf < leaves.size(); ++leaf) {
+    const bool is_empty =
+        leaf >= input.light_count && leaves.instances[leaf - input.light_count].light_count == 0;
+    const bool is_local = leaves[leaf].kind == LightKind::kLocal && !is_empty;
+    powers[leaf] = is_local ? static_cast<double>(leaves[leaf].power) : 0.0;
+  }
+  leaf_powers_ = AliasTable(powers, memory);
+  Array<double> distant_powers(memory, distant_.size());
+  for (size_t i = 0; i < distant_.size(); ++i) {
+    distant_powers[i] = static_cast<double>(distant_[i].energy);
+  }
+  distant_powers_ = AliasTable(distant_powers, memory);
+}
+
+double CommittedLights::distant_share() const {
+  if (distant_powers_.empty()) return 0.0;
+  return leaf_powers_.empty() ? 1.0 : view_.distant_probability;
+}
+
+kiwami_light_choice CommittedLights::choose_by_power(double random) const {
+  const double distant = distant_share();
+  // Not a number, or out of range, counts as the nearest one in range.
+  double number = random > 0.0 ? std::min(random, 1.0 - 0x1p-53) : 0.0;
+  uint32_t light_id = KIWAMI_INVALID_ID, instance_id = KIWAMI_INVALID_ID;
+  const CommittedLights* lights = this;
+  if (number < distant) {
+    const AliasTable::Draw draw = distant_powers_.draw(number / distant);
+    light_id = distant_[draw.index].light_id;
+    number = draw.random;
+  } else if (!leaf_powers_.empty()) {
+    const double rest = (number - distant) / (1.0 - distant);
+    AliasTable::Draw draw = leaf_powers_.draw(std::min(rest, 1.0 - 0x1p-53));
+    if (draw.index >= view_.light_count) {
+      instance_id = draw.index - view_.light_count;
+      lights = held_[instance_id];
+      draw = lights->leaf_powers_.draw(draw.random);
+    }
+    light_id = draw.index;
+    number = draw.random;
+  } else {
+    return {KIWAMI_INVALID_ID, KIWAMI_INVALID_ID, 0, 0.0f, 0.0};
+  }
+  const double probability = probability_by_power({light_id, instance_id});
+  return {light_id, instance_id, lights->user_ids_[light_id],
+          std::max(static_cast<float>(probability), std::numeric_limits<float>::min()), number};
+}
+
+double CommittedLights::probability_by_power(const kiwami_light_name& name) const {
+  const double distant = distant_share();
+  if (name.instance_id == KIWAMI_INVALID_ID) {
+    if (name.light_id >= view_.light_count) return 0.0;
+    for (uint32_t i = 0; i < distant_.size(); ++i) {
+      if (distant_[i].light_id == name.light_id) return distant * distant_powers_.probability(i);
+    }
+    return leaf_powers_.empty() ? 0.0 : (1.0 - distant) * leaf_powers_.probability(name.light_id);
+  }
+  if (name.instance_id >= held_.size() || leaf_powers_.empty()) return 0.0;
+  const CommittedLights& inner = *held_[name.instance_id];
+  if (name.light_id >= inner.view_.light_count || inner.leaf_powers_.empty()) return 0.0;
+  return (1.0 - distant) * leaf_powers_.probability(view_.light_count + name.instance_id) *
+         inner.leaf_powers_.probability(name.light_id);
+}
+
 void CommittedLights::describe(const LightInput& input) {
   view_.nodes = tree_.nodes.data();
   view_.node_count = tree_.node_count;
@@ -227,7 +296,8 @@ void CommittedLights::describe(const LightInput& input) {
   info_.depth = tree_.depth;
   info_.cost = tree_.cost;
   info_.bytes = sizeof(*this) + links_.bytes() + tree_.bytes() + user_ids_.bytes() +
-                distant_.bytes() + instance_views_.bytes() +
+                distant_.bytes() + instance_views_.bytes() + leaf_powers_.bytes() +
+                perfect_tree_.bytes() + distant_powers_.bytes() +
                 input.instance_count * sizeof(CommittedLights*);
 }
 

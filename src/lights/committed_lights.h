@@ -3,6 +3,8 @@
 
 #include "core/device.h"
 #include "core/object.h"
+#include "lights/alias_table.h"
+#include "lights/perfect_light_tree.h"
 #include "lights/wide_light_tree.h"
 
 namespace kiwami {
@@ -27,6 +29,7 @@ struct LightInput {
   uint32_t width;
   uint32_t builder;
   float distant_probability;
+  bool has_roulette;  ///< whether the tree for it is built, too
 };
 
 /// A tree over lights with all that kernels read, never changed again: so an instance shows the
@@ -51,11 +54,27 @@ class CommittedLights : public Object<CommittedLights> {
   /// Of all lights in the tree together, as a leaf of another; light_count 0 where there is none.
   const InstanceLeaf& summary() const { return summary_; }
 
+  /// One choice by power alone, whatever the receiver is. Distant lights have the same share as
+  /// with trees where the tree has lights.
+  kiwami_light_choice choose_by_power(double random) const;
+  double probability_by_power(const kiwami_light_name& name) const;
+
+  /// Whether it was built with what the roulette needs.
+  bool has_roulette() const { return has_roulette_; }
+  /// The lights that the roulette accepts, at most max_count, and a distant one; returns how many.
+  uint32_t play_roulette(const kiwami_light_receiver& receiver, kiwami_light_choice* choices,
+                         uint32_t max_count) const;
+  /// The probability with which the roulette accepts a light.
+  float roulette_probability(const kiwami_light_receiver& receiver, const kiwami_light_name& name,
+                             uint32_t max_count) const;
+
  private:
   void build(const LightInput& input, const LightLeaves& leaves, const CommittedLights* shape);
   void collect_distant(const LightInput& input);
   void place_instances(const LightInput& input, Array<InstanceLeaf>& leaves);
   void describe(const LightInput& input);
+  void weigh(const LightInput& input, const LightLeaves& leaves);
+  double distant_share() const;
 
   Reference<Device> device_;
   LightLinks links_;
@@ -65,6 +84,10 @@ class CommittedLights : public Object<CommittedLights> {
   Array<LightInstanceView> instance_views_;
   /// The trees of instances, each held once per instance.
   Array<CommittedLights*> held_;
+  bool has_roulette_ = false;
+  PerfectLightTree perfect_tree_;
+  AliasTable leaf_powers_;     ///< of lights and instances
+  AliasTable distant_powers_;  ///< by place in distant_
   InstanceLeaf summary_{};
   LightTreeView view_{};
   kiwami_light_tree_info info_{};

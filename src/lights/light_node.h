@@ -14,6 +14,9 @@ constexpr uint32_t kNoLightSlot = 0xFFFFFFFFu;
 /// The nodes above a light are at most as many: builders see to it.
 constexpr uint32_t kMaxLightDepth = 96;
 
+/// The choices of a receiver are at most as many.
+constexpr uint32_t kMaxLightChoices = 64;
+
 /// N children, field by field. An empty slot has energy 0.
 template <int N>
 struct LightNode {
@@ -62,6 +65,7 @@ struct LightTreeView {
   float least_square;
   float root_centre[3], root_radius;  ///< of the sphere around all lights
   float root_energy;
+  float root_mean_energy, root_energy_variance, root_light_count;  ///< as in LightNode
 };
 
 /// A tree seen through a transform.

@@ -5,8 +5,15 @@
 
 namespace kiwami {
 
-/// Runs a kernel over a batch, in blocks on the device's threads if it is large.
-void run_light_kernel(const Parallel& parallel, const LightTreeView& tree, LightKernel kernel,
-                      const LightBatch& batch, bool on_calling_thread);
+/// How a batch is to be answered: what kiwami_light_query says, checked.
+struct LightMethod {
+  uint32_t method;  ///< KIWAMI_LIGHT_METHOD_*
+  bool on_calling_thread;
+};
+
+/// Answer a batch of a committed tree, in blocks on the device's threads if it is large.
+void sample_lights(const LightTree& tree, const LightMethod& method, const LightBatch& batch);
+void find_light_probabilities(const LightTree& tree, const LightMethod& method,
+                              const LightBatch& batch);
 
 }  // namespace kiwami

@@ -95,6 +95,7 @@ LightTree::LightTree(Device& device, const kiwami_light_tree_desc& desc)
     : device_(device),
       width_(desc.width ? desc.width : default_width_of(device.isa())),
       builder_(desc.builder),
+      flags_(desc.flags),
       distant_probability_(desc.distant_probability),
       kernels_(light_kernels_of(device.isa(), width_)),
       lights_(device.memory()),
@@ -197,7 +198,8 @@ LightInput LightTree::input() const {
           static_cast<uint32_t>(instances_.size()),
           width_,
           builder_,
-          distant_probability_};
+          distant_probability_,
+          (flags_ & KIWAMI_LIGHT_TREE_WITH_ROULETTE) != 0};
 }
 
 void LightTree::commit() {

@@ -62,6 +62,7 @@ class LightTree : public Object<LightTree> {
   Reference<Device> device_;
   uint32_t width_;
   uint32_t builder_;
+  uint32_t flags_;
   float distant_probability_;
   LightKernels kernels_;
   GrowingArray<LightRecord> lights_;

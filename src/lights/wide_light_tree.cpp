@@ -60,6 +60,21 @@ void clear_slot(LightNode<N>& node, int slot) {
   node.link_mask[slot] = 0;
 }
 
+/// What adaptive splitting asks, in the units of scaled energies.
+struct Moments {
+  float mean, variance, count;
+
+  Moments(const LightCluster& cluster, double scale)
+      : count(static_cast<float>(cluster.light_count)) {
+    const double lights = cluster.light_count;
+    const double average = cluster.energy / lights * scale;
+    const double square = cluster.energy_square / lights * scale * scale;
+    constexpr double kGreatest = std::numeric_limits<float>::max();
+    mean = static_cast<float>(average);
+    variance = static_cast<float>(std::clamp(square - average * average, 0.0, kGreatest));
+  }
+};
+
 template <int N>
 void write_slot(LightNode<N>& node, int slot, const LightCluster& cluster, uint32_t child,
                 double scale) {
@@ -77,13 +92,10 @@ void write_slot(LightNode<N>& node, int slot, const LightCluster& cluster, uint3
   node.cos_extent[slot] = static_cast<float>(cone.extent.cosine);
   node.side[slot] = cone.is_two_sided ? -1.0f : 1.0f;
   node.energy[slot] = scaled_energy(cluster.energy, scale);
-  const double count = cluster.light_count;
-  const double mean = cluster.energy / count * scale;
-  const double variance = cluster.energy_square / count * scale * scale - mean * mean;
-  node.mean_energy[slot] = static_cast<float>(mean);
-  node.energy_variance[slot] = static_cast<float>(
-      std::min(std::max(variance, 0.0), static_cast<double>(std::numeric_limits<float>::max())));
-  node.light_count[slot] = static_cast<float>(count);
+  const Moments moments(cluster, scale);
+  node.mean_energy[slot] = moments.mean;
+  node.energy_variance[slot] = moments.variance;
+  node.light_count[slot] = moments.count;
   node.child[slot] = child;
   node.link_mask[slot] = cluster.link_mask;
 }
@@ -213,7 +225,12 @@ void describe_root(const LightCluster& root, LightTreeView& view) {
   const RoundBox box(root.box);
   for (int axis = 0; axis < 3; ++axis) view.root_centre[axis] = box.centre[axis];
   view.root_radius = box.radius;
-  view.root_energy = scaled_energy(root.energy, energy_scale(root));
+  const double scale = energy_scale(root);
+  const Moments moments(root, scale);
+  view.root_energy = scaled_energy(root.energy, scale);
+  view.root_mean_energy = moments.mean;
+  view.root_energy_variance = moments.variance;
+  view.root_light_count = moments.count;
   // Coordinates do not tell nearer points apart; see energy_scale for what it is divided by.
   const double diameter = 2.0 * static_cast<double>(box.radius);
   view.least_square = static_cast<float>(std::max(diameter * diameter * 0x1p-48, 0x1p-100));

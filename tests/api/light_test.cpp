@@ -402,6 +402,19 @@ TEST(Light, BadArgumentsAreNamed) {
   EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
             KIWAMI_ERROR_INVALID_ARGUMENT);
   query.method = KIWAMI_LIGHT_METHOD_TREE;
+  query.max_choices = 2;
+  EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
+            KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(last_error().find("query.max_choices is 2"), std::string::npos) << last_error();
+  query.method = KIWAMI_LIGHT_METHOD_TREE_SPLITTING;
+  query.max_choices = KIWAMI_LIGHT_MAX_CHOICES + 1;
+  EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
+            KIWAMI_ERROR_INVALID_ARGUMENT);
+  query.max_choices = 1;
+  query.threshold = 1.5f;
+  EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
+            KIWAMI_ERROR_INVALID_ARGUMENT);
+  query.threshold = 0.5f;
   query.flags = 2;
   EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
             KIWAMI_ERROR_INVALID_ARGUMENT);

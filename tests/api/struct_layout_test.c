@@ -53,11 +53,13 @@ static void check_lights(void) {
   FIELD(kiwami_light, power, 80);
   FIELD(kiwami_light, user_id, 84);
   FIELD(kiwami_light, link_mask, 88);
-  SIZE(kiwami_light_tree_desc, 16);
+  SIZE(kiwami_light_tree_desc, 24);
   FIELD(kiwami_light_tree_desc, struct_size, 0);
   FIELD(kiwami_light_tree_desc, width, 4);
   FIELD(kiwami_light_tree_desc, builder, 8);
   FIELD(kiwami_light_tree_desc, distant_probability, 12);
+  FIELD(kiwami_light_tree_desc, flags, 16);
+  FIELD(kiwami_light_tree_desc, reserved, 20);
   SIZE(kiwami_light_tree_info, 64);
   FIELD(kiwami_light_tree_info, struct_size, 0);
   FIELD(kiwami_light_tree_info, width, 4);
@@ -87,11 +89,13 @@ static void check_lights(void) {
   SIZE(kiwami_light_name, 8);
   FIELD(kiwami_light_name, light_id, 0);
   FIELD(kiwami_light_name, instance_id, 4);
-  SIZE(kiwami_light_query, 16);
+  SIZE(kiwami_light_query, 24);
   FIELD(kiwami_light_query, struct_size, 0);
   FIELD(kiwami_light_query, flags, 4);
   FIELD(kiwami_light_query, method, 8);
-  FIELD(kiwami_light_query, reserved, 12);
+  FIELD(kiwami_light_query, max_choices, 12);
+  FIELD(kiwami_light_query, threshold, 16);
+  FIELD(kiwami_light_query, reserved, 20);
 }
 
 /* Geometries that are no triangles. */
@@ -630,6 +634,12 @@ static void check_numbers(void) {
   expect("KIWAMI_LIGHT_TWO_SIDED", KIWAMI_LIGHT_TWO_SIDED, 1);
   expect("KIWAMI_LIGHT_BUILDER_OCTANTS", KIWAMI_LIGHT_BUILDER_OCTANTS, 1);
   expect("KIWAMI_LIGHT_METHOD_TREE", KIWAMI_LIGHT_METHOD_TREE, 0);
+  expect("KIWAMI_LIGHT_METHOD_POWER", KIWAMI_LIGHT_METHOD_POWER, 1);
+  expect("KIWAMI_LIGHT_METHOD_TREE_SPLITTING", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 2);
+  expect("KIWAMI_LIGHT_METHOD_LIGHTCUTS", KIWAMI_LIGHT_METHOD_LIGHTCUTS, 3);
+  expect("KIWAMI_LIGHT_METHOD_LAZY_ROULETTE", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 4);
+  expect("KIWAMI_LIGHT_TREE_WITH_ROULETTE", KIWAMI_LIGHT_TREE_WITH_ROULETTE, 1);
+  expect("KIWAMI_LIGHT_MAX_CHOICES", KIWAMI_LIGHT_MAX_CHOICES, 64);
   expect("KIWAMI_RECEIVER_BOTH_SIDES", KIWAMI_RECEIVER_BOTH_SIDES, 1);
 }
 

@@ -300,6 +300,7 @@ LightTreeHandle make_light_tree(kiwami_device* device, const LightScene& scene, 
   check(kiwami_light_tree_desc_init(&desc, sizeof desc));
   desc.width = width;
   desc.builder = builder;
+  desc.flags = KIWAMI_LIGHT_TREE_WITH_ROULETTE;
   const auto create = [&](const std::vector<kiwami_light>& lights) {
     kiwami_light_tree* tree = nullptr;
     check(kiwami_light_tree_create(device, &desc, &tree));

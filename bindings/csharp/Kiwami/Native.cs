@@ -511,7 +511,9 @@ internal unsafe struct kiwami_light_tree_desc {
   public uint width;
   public uint builder;
   public float distant_probability;
-  public const int Size = 16;
+  public uint flags;
+  public uint reserved;
+  public const int Size = 24;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -564,8 +566,10 @@ internal unsafe struct kiwami_light_query {
   public uint struct_size;
   public uint flags;
   public uint method;
+  public uint max_choices;
+  public float threshold;
   public uint reserved;
-  public const int Size = 16;
+  public const int Size = 24;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -721,6 +725,7 @@ internal static class Native {
   public const uint KIWAMI_ABI_VERSION = 0;
   public const uint KIWAMI_FILE_FORMAT_VERSION = 1;
   public const uint KIWAMI_INVALID_ID = 4294967295;
+  public const uint KIWAMI_LIGHT_MAX_CHOICES = 64;
   public const float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
   public const uint KIWAMI_MAX_INSTANCE_DEPTH = 8;
   public const uint KIWAMI_OPACITY_ALL_OPAQUE = 4294967293;
@@ -839,8 +844,13 @@ internal static class Native {
   public const uint KIWAMI_LIGHT_TWO_SIDED = 1;
   public const uint KIWAMI_LIGHT_BUILDER_SAOH = 0;
   public const uint KIWAMI_LIGHT_BUILDER_OCTANTS = 1;
+  public const uint KIWAMI_LIGHT_TREE_WITH_ROULETTE = 1;
   public const uint KIWAMI_RECEIVER_BOTH_SIDES = 1;
   public const uint KIWAMI_LIGHT_METHOD_TREE = 0;
+  public const uint KIWAMI_LIGHT_METHOD_POWER = 1;
+  public const uint KIWAMI_LIGHT_METHOD_TREE_SPLITTING = 2;
+  public const uint KIWAMI_LIGHT_METHOD_LIGHTCUTS = 3;
+  public const uint KIWAMI_LIGHT_METHOD_LAZY_ROULETTE = 4;
   public const uint KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
   public const uint KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   public const uint KIWAMI_MAX_TIME_STEPS = 129;

@@ -7,6 +7,7 @@ import ctypes
 KIWAMI_ABI_VERSION = 0
 KIWAMI_FILE_FORMAT_VERSION = 1
 KIWAMI_INVALID_ID = 4294967295
+KIWAMI_LIGHT_MAX_CHOICES = 64
 KIWAMI_MAX_COORDINATE = 1.152921504606847e+18
 KIWAMI_MAX_INSTANCE_DEPTH = 8
 KIWAMI_OPACITY_ALL_OPAQUE = 4294967293
@@ -125,8 +126,13 @@ KIWAMI_LIGHT_ENVIRONMENT = 7
 KIWAMI_LIGHT_TWO_SIDED = 1
 KIWAMI_LIGHT_BUILDER_SAOH = 0
 KIWAMI_LIGHT_BUILDER_OCTANTS = 1
+KIWAMI_LIGHT_TREE_WITH_ROULETTE = 1
 KIWAMI_RECEIVER_BOTH_SIDES = 1
 KIWAMI_LIGHT_METHOD_TREE = 0
+KIWAMI_LIGHT_METHOD_POWER = 1
+KIWAMI_LIGHT_METHOD_TREE_SPLITTING = 2
+KIWAMI_LIGHT_METHOD_LIGHTCUTS = 3
+KIWAMI_LIGHT_METHOD_LAZY_ROULETTE = 4
 KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1
 KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1
 KIWAMI_MAX_TIME_STEPS = 129
@@ -660,6 +666,8 @@ class kiwami_light_tree_desc(ctypes.Structure):
         ("width", ctypes.c_uint32),
         ("builder", ctypes.c_uint32),
         ("distant_probability", ctypes.c_float),
+        ("flags", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
     ]
 
 
@@ -713,6 +721,8 @@ class kiwami_light_query(ctypes.Structure):
         ("struct_size", ctypes.c_uint32),
         ("flags", ctypes.c_uint32),
         ("method", ctypes.c_uint32),
+        ("max_choices", ctypes.c_uint32),
+        ("threshold", ctypes.c_float),
         ("reserved", ctypes.c_uint32),
     ]
 
@@ -899,12 +909,12 @@ SIZES = {
     kiwami_light: 96,
     kiwami_light_mesh_desc: 96,
     kiwami_light_instance_desc: 72,
-    kiwami_light_tree_desc: 16,
+    kiwami_light_tree_desc: 24,
     kiwami_light_tree_info: 64,
     kiwami_light_receiver: 56,
     kiwami_light_choice: 24,
     kiwami_light_name: 8,
-    kiwami_light_query: 16,
+    kiwami_light_query: 24,
     kiwami_moving_mesh_desc: 96,
     kiwami_opacity_desc: 56,
     kiwami_spheres_desc: 48,

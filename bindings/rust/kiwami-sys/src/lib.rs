@@ -11,6 +11,7 @@ pub type kiwami_result = i32;
 pub const KIWAMI_ABI_VERSION: u32 = 0;
 pub const KIWAMI_FILE_FORMAT_VERSION: u32 = 1;
 pub const KIWAMI_INVALID_ID: u32 = 4294967295;
+pub const KIWAMI_LIGHT_MAX_CHOICES: u32 = 64;
 pub const KIWAMI_MAX_COORDINATE: f32 = 1.152921504606847e+18;
 pub const KIWAMI_MAX_INSTANCE_DEPTH: u32 = 8;
 pub const KIWAMI_OPACITY_ALL_OPAQUE: u32 = 4294967293;
@@ -129,8 +130,13 @@ pub const KIWAMI_LIGHT_ENVIRONMENT: u32 = 7;
 pub const KIWAMI_LIGHT_TWO_SIDED: u32 = 1;
 pub const KIWAMI_LIGHT_BUILDER_SAOH: u32 = 0;
 pub const KIWAMI_LIGHT_BUILDER_OCTANTS: u32 = 1;
+pub const KIWAMI_LIGHT_TREE_WITH_ROULETTE: u32 = 1;
 pub const KIWAMI_RECEIVER_BOTH_SIDES: u32 = 1;
 pub const KIWAMI_LIGHT_METHOD_TREE: u32 = 0;
+pub const KIWAMI_LIGHT_METHOD_POWER: u32 = 1;
+pub const KIWAMI_LIGHT_METHOD_TREE_SPLITTING: u32 = 2;
+pub const KIWAMI_LIGHT_METHOD_LIGHTCUTS: u32 = 3;
+pub const KIWAMI_LIGHT_METHOD_LAZY_ROULETTE: u32 = 4;
 pub const KIWAMI_LIGHT_QUERY_CALLING_THREAD: u32 = 1;
 pub const KIWAMI_MOVING_MESH_SHARE_BUFFERS: u32 = 1;
 pub const KIWAMI_MAX_TIME_STEPS: u32 = 129;
@@ -708,8 +714,10 @@ pub struct kiwami_light_tree_desc {
     pub width: u32,
     pub builder: u32,
     pub distant_probability: f32,
+    pub flags: u32,
+    pub reserved: u32,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_light_tree_desc>() == 16);
+const _: () = assert!(std::mem::size_of::<kiwami_light_tree_desc>() == 24);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -766,9 +774,11 @@ pub struct kiwami_light_query {
     pub struct_size: u32,
     pub flags: u32,
     pub method: u32,
+    pub max_choices: u32,
+    pub threshold: f32,
     pub reserved: u32,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 16);
+const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 24);
 
 #[repr(C)]
 #[derive(Clone, Copy)]

@@ -12,6 +12,7 @@ final class Native {
   static final int KIWAMI_ABI_VERSION = 0;
   static final int KIWAMI_FILE_FORMAT_VERSION = 1;
   static final int KIWAMI_INVALID_ID = 0xffffffff;
+  static final int KIWAMI_LIGHT_MAX_CHOICES = 64;
   static final float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
   static final int KIWAMI_MAX_INSTANCE_DEPTH = 8;
   static final int KIWAMI_OPACITY_ALL_OPAQUE = 0xfffffffd;
@@ -130,8 +131,13 @@ final class Native {
   static final int KIWAMI_LIGHT_TWO_SIDED = 1;
   static final int KIWAMI_LIGHT_BUILDER_SAOH = 0;
   static final int KIWAMI_LIGHT_BUILDER_OCTANTS = 1;
+  static final int KIWAMI_LIGHT_TREE_WITH_ROULETTE = 1;
   static final int KIWAMI_RECEIVER_BOTH_SIDES = 1;
   static final int KIWAMI_LIGHT_METHOD_TREE = 0;
+  static final int KIWAMI_LIGHT_METHOD_POWER = 1;
+  static final int KIWAMI_LIGHT_METHOD_TREE_SPLITTING = 2;
+  static final int KIWAMI_LIGHT_METHOD_LIGHTCUTS = 3;
+  static final int KIWAMI_LIGHT_METHOD_LAZY_ROULETTE = 4;
   static final int KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
   static final int KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   static final int KIWAMI_MAX_TIME_STEPS = 129;
@@ -609,11 +615,13 @@ final class Native {
 
   /** Offsets of kiwami_light_tree_desc. */
   static final class LightTreeDesc {
-    static final int STRUCT_BYTES = 16;
+    static final int STRUCT_BYTES = 24;
     static final int STRUCT_SIZE = 0;
     static final int WIDTH = 4;
     static final int BUILDER = 8;
     static final int DISTANT_PROBABILITY = 12;
+    static final int FLAGS = 16;
+    static final int RESERVED = 20;
   }
 
   /** Offsets of kiwami_light_tree_info. */
@@ -663,11 +671,13 @@ final class Native {
 
   /** Offsets of kiwami_light_query. */
   static final class LightQuery {
-    static final int STRUCT_BYTES = 16;
+    static final int STRUCT_BYTES = 24;
     static final int STRUCT_SIZE = 0;
     static final int FLAGS = 4;
     static final int METHOD = 8;
-    static final int RESERVED = 12;
+    static final int MAX_CHOICES = 12;
+    static final int THRESHOLD = 16;
+    static final int RESERVED = 20;
   }
 
   /** Offsets of kiwami_moving_mesh_desc. */

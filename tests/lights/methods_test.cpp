@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+// The methods beside the plain descent: by power alone, and adaptive splitting.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "lights/alias_table.h"
+#include "lights/light_scene.h"
+#include "support/environment.h"
+#include "support/library.h"
+
+namespace kiwami_tests {
+namespace {
+
+struct Method {
+  const char* name;
+  uint32_t method;
+  uint32_t max_choices;
+  float threshold;
+
+  kiwami_light_query query() const {
+    kiwami_light_query query;
+    check(kiwami_light_query_init(&query, sizeof query));
+    query.method = method;
+    query.max_choices = max_choices;
+    query.threshold = threshold;
+    return query;
+  }
+};
+
+void PrintTo(const Method& method, std::ostream* stream) { *stream << method.name; }
+
+const Method kMethods[] = {
+    {"power", KIWAMI_LIGHT_METHOD_POWER, 1, 0.5f},
+    {"splitting_1", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 1, 1.0f},
+    {"splitting_2", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 2, 1.0f},
+    {"splitting_8", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 8, 0.6f},
+    {"splitting_64", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 64, 0.9f},
+    {"lightcuts_1", KIWAMI_LIGHT_METHOD_LIGHTCUTS, 1, 0.5f},
+    {"lightcuts_2", KIWAMI_LIGHT_METHOD_LIGHTCUTS, 2, 0.5f},
+    {"lightcuts_10", KIWAMI_LIGHT_METHOD_LIGHTCUTS, 10, 0.5f},
+    {"lazy_roulette_64", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 64, 0.5f},
+    {"lazy_roulette_4", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 4, 0.5f},
+};
+
+std::vector<kiwami_light_choice> sample(const LightTreeHandle& tree, const Method& method,
+                                        const std::vector<kiwami_light_receiver>& receivers) {
+  std::vector<kiwami_light_choice> choices(receivers.size() * method.max_choices);
+  const kiwami_light_query query = method.query();
+  check(kiwami_light_sample(tree.get(), receivers.data(), 0, choices.data(), 0, receivers.size(),
+                            &query));
+  return choices;
+}
+
+std::vector<float> probabilities(const LightTreeHandle& tree, const Method& method,
+                                 const std::vector<SeenLight>& lights,
+                                 const kiwami_light_receiver& receiver) {
+  const std::vector<kiwami_light_receiver> receivers(lights.size(), receiver);
+  std::vector<float> result(lights.size());
+  const kiwami_light_query query = method.query();
+  check(kiwami_light_pdf(tree.get(), receivers.data(), 0, &lights[0].name, sizeof(SeenLight),
+                         result.data(), 0, lights.size(), &query));
+  return result;
+}
+
+size_t index_of(const std::vector<SeenLight>& lights, const kiwami_light_choice& choice) {
+  for (size_t i = 0; i < lights.size(); ++i) {
+    if (lights[i].name.light_id == choice.light_id &&
+        lights[i].name.instance_id == choice.instance_id) {
+      return i;
+    }
+  }
+  ADD_FAILURE() << "no light " << choice.light_id;
+  return 0;
+}
+
+LightScene scene_number(uint32_t number, Random& random) {
+  LightSceneOptions options;
+  options.light_count = 40;
+  options.group_count = number % 2 == 0 ? 2 : 0;
+  options.lights_per_group = 10;
+  options.distant_count = number % 3 == 0 ? 3 : 0;
+  options.has_link_masks = number % 4 == 1;
+  return random_light_scene(options, random);
+}
+
+class LightMethods : public testing::TestWithParam<Method> {};
+
+TEST_P(LightMethods, NoContributingLightIsLeftOutAndPdfIsThatOfTheSample) {
+  RecordProperty("seed", std::to_string(seed()));
+  Random random(seed(), 650);
+  const DeviceHandle device = make_device(KIWAMI_ISA_AUTO, 1);
+  for (uint32_t number = 0; number < 8; ++number) {
+    const LightScene scene = scene_number(number, random);
+    const std::vector<SeenLight> lights = scene.seen();
+    const uint32_t widths[] = {2, 4, 8, 16};
+    const LightTreeHandle tree = make_light_tree(device.get(), scene, widths[number % 4]);
+    for (uint64_t i = 0; i < ray_budget(100); ++i) {
+      const kiwami_light_receiver receiver = random_receiver(scene, random);
+      const std::vector<float> p = probabilities(tree, GetParam(), lights, receiver);
+      for (size_t light = 0; light < lights.size(); ++light) {
+        ASSERT_LE(p[light], 1.0f);
+        if (p[light] > 0.0f) continue;
+        ASSERT_EQ(contribution(lights[light], receiver), 0.0)
+            << "light " << light << ", scene " << number << ", seed " << seed();
+      }
+      bool has_ended = false;
+      std::vector<bool> is_chosen(lights.size(), false);
+      const std::vector<kiwami_light_choice> choices = sample(tree, GetParam(), {receiver});
+      for (const kiwami_light_choice& choice : choices) {
+        has_ended = has_ended || choice.light_id == KIWAMI_INVALID_ID;
+        if (has_ended) {
+          EXPECT_EQ(choice.light_id, KIWAMI_INVALID_ID) << "choices stand first";
+          continue;
+        }
+        const size_t light = index_of(lights, choice);
+        // Of what the roulette accepts and has no room for, the rest is less likely to stay.
+        if (GetParam().method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {
+          ASSERT_LE(choice.probability, p[light]);
+          if (choices.back().light_id != KIWAMI_INVALID_ID) continue;
+        }
+        ASSERT_EQ(choice.probability, p[light]) << "scene " << number << ", receiver " << i;
+        ASSERT_TRUE(choice.random >= 0.0 && choice.random < 1.0);
+        ASSERT_FALSE(is_chosen[light]) << "twice";
+        is_chosen[light] = true;
+      }
+    }
+  }
+}
+
+TEST_P(LightMethods, ChoicesFollowTheProbabilities) {
+  if (GetParam().method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE && GetParam().max_choices < 64) {
+    GTEST_SKIP() << "with little room, not all that are accepted are chosen";
+  }
+  RecordProperty("seed", std::to_string(seed()));
+  Random random(seed(), 651);
+  const DeviceHandle device = make_device(KIWAMI_ISA_AUTO, 1);
+  const uint64_t samples = std::max<uint64_t>(1000, ray_budget(8000));
+  double square = 0.0;
+  int count = 0;
+  for (uint32_t number = 0; number < 4; ++number) {
+    const LightScene scene = scene_number(number, random);
+    const std::vector<SeenLight> lights = scene.seen();
+    const LightTreeHandle tree = make_light_tree(device.get(), scene, number % 2 == 0 ? 8 : 4);
+    const kiwami_light_receiver receiver = random_receiver(scene, random);
+    const std::vector<float> p = probabilities(tree, GetParam(), lights, receiver);
+    std::vector<kiwami_light_receiver> receivers(samples, receiver);
+    for (auto& each : receivers) {
+      each.random =
+          (static_cast<double>(random.bits()) + static_cast<double>(random.bits()) * 0x1p-32) *
+          0x1p-32;
+    }
+    std::vector<double> seen(lights.size(), 0.0);
+    for (const kiwami_light_choice& choice : sample(tree, GetParam(), receivers)) {
+      if (choice.light_id != KIWAMI_INVALID_ID) seen[index_of(lights, choice)] += 1.0;
+    }
+    // Each light is there or not: a binomial number of times.
+    for (size_t i = 0; i < lights.size(); ++i) {
+      const auto n = static_cast<double>(samples);
+      const double probability = static_cast<double>(p[i]), expected = n * probability;
+      if (p[i] == 0.0f || p[i] == 1.0f) {
+        EXPECT_EQ(seen[i], expected);
+      } else if (expected > 8.0 && n - expected > 8.0) {
+        const double z = (seen[i] - expected) / std::sqrt(expected * (1.0 - probability));
+        EXPECT_LT(std::fabs(z), 5.0) << "light " << i << ", scene " << number;
+        square += z * z;
+        ++count;
+      }
+    }
+  }
+  // Lights of one branch exclude each other, so their squares are not independent; but the mean
+  // is 1.
+  if (count > 20) {
+    EXPECT_LT(square / count, 1.6);
+  }
+}
+
+TEST_P(LightMethods, EstimatesAreUnbiased) {
+  RecordProperty("seed", std::to_string(seed()));
+  Random random(seed(), 652);
+  const DeviceHandle device = make_device(KIWAMI_ISA_AUTO, 1);
+  constexpr int kSamples = 200;
+  double deviations = 0.0;
+  int count = 0;
+  for (uint32_t number = 0; number < 4; ++number) {
+    const LightScene scene = scene_number(number, random);
+    const std::vector<SeenLight> lights = scene.seen();
+    const LightTreeHandle tree = make_light_tree(device.get(), scene, 8);
+    for (uint64_t r = 0; r < ray_budget(60); ++r) {
+      const kiwami_light_receiver receiver = random_receiver(scene, random);
+      const std::vector<float> p = probabilities(tree, GetParam(), lights, receiver);
+      // Lights of one branch exclude each other and branches are independent: the variance is at
+      // most that of lights which are chosen or not independently.
+      double expected = 0.0, variance = 0.0;
+      std::vector<double> f(lights.size());
+      for (size_t i = 0; i < lights.size(); ++i) {
+        expected += f[i] = contribution(lights[i], receiver);
+        if (p[i] > 0.0f) variance += f[i] * f[i] * (1.0 / static_cast<double>(p[i]) - 1.0);
+      }
+      std::vector<kiwami_light_receiver> receivers(kSamples, receiver);
+      for (auto& each : receivers) each.random = (random.bits() + 0.5) * 0x1p-32;
+      const std::vector<kiwami_light_choice> choices = sample(tree, GetParam(), receivers);
+      double mean = 0.0;
+      for (const kiwami_light_choice& choice : choices) {
+        if (choice.light_id == KIWAMI_INVALID_ID) continue;
+        mean += f[index_of(lights, choice)] / static_cast<double>(choice.probability) / kSamples;
+      }
+      if (!(variance > 1e-9 * expected * expected)) {
+        EXPECT_NEAR(mean, expected, 1e-4 * expected);
+        continue;
+      }
+      deviations += (mean - expected) / std::sqrt(variance / kSamples);
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 0);
+  EXPECT_LT(std::fabs(deviations), 4.0 * std::sqrt(static_cast<double>(count))) << count;
+}
+
+TEST_P(LightMethods, EveryIsaChoosesTheSame) {
+  std::vector<kiwami_light_choice> expected;
+  for (const uint32_t width : {4u, 8u, 16u}) {
+    expected.clear();
+    for (const uint32_t isa : available_isas()) {
+      Random random(seed(), 653);
+      const LightScene scene = scene_number(0, random);
+      const DeviceHandle device = make_device(isa, 2);
+      const LightTreeHandle tree = make_light_tree(device.get(), scene, width);
+      std::vector<kiwami_light_receiver> receivers(ray_budget(2000));
+      for (auto& receiver : receivers) receiver = random_receiver(scene, random);
+      const std::vector<kiwami_light_choice> choices = sample(tree, GetParam(), receivers);
+      if (expected.empty()) expected = choices;
+      EXPECT_EQ(std::memcmp(choices.data(), expected.data(),
+                            choices.size() * sizeof(kiwami_light_choice)),
+                0)
+          << kiwami_isa_name(isa) << ", width " << width;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LightMethods, testing::ValuesIn(kMethods),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+TEST(LightSplitting, ThresholdSaysHowMuchIsSplit) {
+  Random random(seed(), 654);
+  LightSceneOptions options;
+  options.light_count = 50;
+  const LightScene scene = random_light_scene(options, random);
+  const std::vector<SeenLight> lights = scene.seen();
+  const DeviceHandle device = make_device(KIWAMI_ISA_AUTO, 1);
+  const LightTreeHandle tree = make_light_tree(device.get(), scene, 8);
+  kiwami_light_receiver receiver{};
+  receiver.link_mask = ~uint64_t{0};
+  receiver.position[0] = 3.0f;
+  receiver.random = 0.37;
+  const auto count_at = [&](float threshold) {
+    const Method method{"", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 64, threshold};
+    int count = 0;
+    for (const auto& choice : sample(tree, method, {receiver})) {
+      count += choice.light_id != KIWAMI_INVALID_ID ? 1 : 0;
+    }
+    return count;
+  };
+  // 0: the plain descent. 1: every light that can contribute, for certain.
+  EXPECT_EQ(count_at(0.0f), 1);
+  kiwami_light_choice plain;
+  check(kiwami_light_sample(tree.get(), &receiver, 0, &plain, 0, 1, nullptr));
+  const Method never{"", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 64, 0.0f};
+  EXPECT_EQ(std::memcmp(&plain, sample(tree, never, {receiver}).data(), sizeof plain), 0);
+  const Method always{"", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 64, 1.0f};
+  const std::vector<float> p = probabilities(tree, always, lights, receiver);
+  for (size_t i = 0; i < lights.size(); ++i) {
+    if (contribution(lights[i], receiver) > 0.0) {
+      EXPECT_EQ(p[i], 1.0f) << i;
+    }
+  }
+  int last = 1;
+  for (const float threshold : {0.3f, 0.5f, 0.7f, 0.8f, 0.9f, 1.0f}) {
+    const int count = count_at(threshold);
+    EXPECT_GE(count, last) << threshold;
+    last = count;
+  }
+  EXPECT_GT(last, 10);
+}
+
+TEST(AliasTable, DrawsInProportionToWeights) {
+  Random random(seed(), 655);
+  const DeviceHandle device = make_device(KIWAMI_ISA_AUTO, 1);
+  kiwami::Memory memory(nullptr, nullptr, nullptr);
+  for (const uint32_t count : {1u, 2u, 7u, 1000u}) {
+    kiwami::Array<double> weights(memory, count);
+    double total = 0.0;
+    for (uint32_t i = 0; i < count; ++i) {
+      weights[i] = random.one_in(3) ? 0.0 : std::exp2(20.0 * static_cast<double>(random.unit()));
+      if (i == 0) weights[i] = 1.0;
+      total += weights[i];
+    }
+    const kiwami::AliasTable table(weights, memory);
+    // Along a fine grid, each number is drawn for its share of the grid's points.
+    const uint32_t points = count * 2000;
+    std::vector<uint32_t> seen(count, 0);
+    for (uint32_t i = 0; i < points; ++i) {
+      const auto draw = table.draw((i + 0.5) / points);
+      ASSERT_LT(draw.index, count);
+      ASSERT_TRUE(draw.random >= 0.0 && draw.random < 1.0);
+      ++seen[draw.index];
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+      EXPECT_NEAR(table.probability(i), weights[i] / total, 1e-12);
+      if (weights[i] == 0.0) {
+        EXPECT_EQ(seen[i], 0u);
+      }
+      // Every entry that has a part of it may round by one point.
+      EXPECT_NEAR(seen[i], table.probability(i) * points, count + 2.0) << i;
+    }
+    EXPECT_LT(table.draw(1.0 - 0x1p-53).index, count);
+  }
+  kiwami::Array<double> nothing(memory, 3);
+  nothing.fill_zero();
+  EXPECT_TRUE(kiwami::AliasTable(nothing, memory).empty());
+}
+
+}  // namespace
+}  // namespace kiwami_tests
