@@ -126,6 +126,12 @@ kiwami_result kiwami_scene_get_bvh(const kiwami_scene* scene, kiwami_bvh** bvh) 
   return guarded(device_of(scene), [&] {
     CommittedScene& committed = committed_of(scene);
     check_not_null(bvh, "bvh");
+    if (!committed.meshes().empty()) {
+      throw Error(
+          KIWAMI_ERROR_INVALID_STATE,
+          "the scene was committed with KIWAMI_PARAMETER_TWO_LEVEL, so that each mesh has a "
+          "tree, expected one tree");
+    }
     const DefaultFloatEnvironment environment;
     *bvh = reinterpret_cast<kiwami_bvh*>(Bvh::create(object_of(scene)->device(), committed));
   });

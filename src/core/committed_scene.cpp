@@ -21,6 +21,8 @@ constexpr uint64_t kMaxTriangleCount = 0xFFFFFFFEu;
 
 /// How much of a build is done after each of its stages, of the default ones.
 constexpr double kCollected = 0.05, kBuilt = 0.6, kMadeWide = 0.9;
+/// The same where each mesh has a tree.
+constexpr double kMeshesBuilt = 0.9;
 /// Of a stage; a guess.
 constexpr size_t kTrianglesPerTask = 1024;
 
@@ -83,6 +85,37 @@ CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometrie
   build(parameters, rays, parallel);
   kernels_ = kernels_of(device.isa(), width, tree_.leaf_layout);
   parts_.build(geometries, count, {parameters, width, memory_, parallel});
+  show_parts();
+  describe();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  info_.build_seconds = seconds.count();
+}
+
+CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
+                               const SceneParameters& parameters,
+                               std::span<const RepresentativeRay> rays,
+                               const CommittedScene* before, bool refits, const Parallel& parallel)
+    : device_(device),
+      memory_(device.memory().allocator()),
+      references_(memory_, geometries, count) {
+  const auto start = std::chrono::steady_clock::now();
+  const uint32_t width = width_of(parameters, device);
+  SceneParameters of_mesh = parameters;
+  of_mesh.set(KIWAMI_PARAMETER_TWO_LEVEL, 0);
+  // For what is asked about hits; this scene's own tree has none of them.
+  number_triangles(geometries, count);
+  tree_.width = tree_.leaf_width = width;
+  tree_.leaf_layout = wide_tree_config(of_mesh, width).leaf_layout;
+  tree_.memory = Array<unsigned char>(memory_, 0);
+  kernels_ = kernels_of(device.isa(), width, tree_.leaf_layout);
+  parallel.begin_stage(kMeshesBuilt, count);
+  meshes_.build({device, geometries, count, of_mesh, rays, width,
+                 before ? &before->meshes_ : nullptr, refits},
+                memory_, parallel);
+  parallel.begin_stage(1.0, count / kTrianglesPerTask);
+  show_tree(meshes_.tree().bounds);
+  parts_.build(geometries, count, {parameters, width, memory_, parallel});
+  parts_.add(meshes_.tree(), meshes_.view());
   show_parts();
   describe();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -200,6 +233,7 @@ void CommittedScene::show_tree(const Bounds& bounds) {
   view_.ranges = ranges_.data();
   view_.range_count = static_cast<uint32_t>(ranges_.size());
   view_.meshes = mesh_views_.data();
+  view_.mesh_bytes = 0;
   for (const TriangleMeshView& mesh : mesh_views_) view_.mesh_bytes += mesh.bytes();
   view_.opacities = opacities_.views();
   for (int axis = 0; axis < 3; ++axis) {
@@ -228,7 +262,8 @@ void CommittedScene::describe() {
   info_.leaf_width = tree_.leaf_width;
   info_.bvh_depth = tree_.depth;
   info_.triangle_count = triangle_count_;
-  info_.skipped_count = numbered_count_ - triangle_count_ + parts_.skipped_count();
+  info_.skipped_count = parts_.skipped_count();
+  if (meshes_.empty()) info_.skipped_count += numbered_count_ - triangle_count_;
   info_.node_count = tree_.node_count;
   info_.leaf_block_count = tree_.leaf_block_count;
   info_.node_bytes = tree_.node_bytes();
@@ -239,6 +274,7 @@ void CommittedScene::describe() {
   info_.leaf_fill = ratio(tree_.used_lanes, tree_.leaf_block_count * tree_.leaf_width);
   info_.sah_cost = tree_.sah_cost;
   info_.reference_count = tree_.used_lanes;
+  meshes_.describe(info_);
 }
 
 HitError CommittedScene::hit_error() const {
@@ -250,6 +286,7 @@ HitError CommittedScene::hit_error() const {
 void CommittedScene::validate() const {
   verify_wide_tree(tree_, source(), triangle_count_, memory_);
   parts_.validate(memory_, parallel());
+  meshes_.validate(memory_);
 }
 
 }  // namespace kiwami

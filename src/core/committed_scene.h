@@ -10,6 +10,7 @@
 #include "core/geometry.h"
 #include "core/memory.h"
 #include "core/object.h"
+#include "core/scene_meshes.h"
 #include "core/scene_opacities.h"
 #include "core/scene_parameters.h"
 #include "core/scene_parts.h"
@@ -38,6 +39,11 @@ class CommittedScene : public Object<CommittedScene> {
   CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
                  const SceneParameters& parameters, std::span<const RepresentativeRay> rays,
                  const Parallel& parallel);
+  /// The same with a tree for each mesh. What has not changed is shared with before, which is
+  /// nullptr or made by the same parameters; refits says whether changed meshes keep their trees.
+  CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
+                 const SceneParameters& parameters, std::span<const RepresentativeRay> rays,
+                 const CommittedScene* before, bool refits, const Parallel& parallel);
   /// Of count geometries, whose tree was saved. Throws Error.
   CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count, SavedTree saved);
   /// A copy, to be refitted.
@@ -76,10 +82,15 @@ class CommittedScene : public Object<CommittedScene> {
   HitError hit_error() const;
   /// About how much a ray may meet.
   uint64_t primitive_count() const {
-    return triangle_count_ + parts_.primitive_count() + parts_.instances().count();
+    const size_t triangles = meshes_.empty() ? triangle_count_ : numbered_count_;
+    return triangles + parts_.primitive_count() + parts_.instances().count();
   }
   /// The instances on the longest path to a hit.
   uint32_t instance_depth() const { return parts_.instances().depth(); }
+  /// Those that have a tree each; empty where one tree holds all.
+  const SceneMeshes& meshes() const { return meshes_; }
+  /// What it holds beside geometries and the scenes of meshes.
+  size_t own_bytes() const { return memory_.bytes_in_use() + sizeof(*this); }
   /// Triangles of all meshes, skipped ones included.
   size_t numbered_count() const { return numbered_count_; }
   TriangleSource source() const {
@@ -128,6 +139,7 @@ class CommittedScene : public Object<CommittedScene> {
   Array<GeometryRange> ranges_;
   SceneOpacities opacities_;
   WideTree tree_;
+  SceneMeshes meshes_;
   SceneParts parts_;
   SceneView view_{};
   size_t numbered_count_ = 0;  ///< triangles of all meshes, skipped ones included

@@ -29,7 +29,12 @@ class Geometry : public Object<Geometry> {
   GeometryKind kind() const { return kind_; }
   /// A ray meets the geometry only where (ray.mask & mask()) != 0.
   uint32_t mask() const { return mask_; }
-  void set_mask(uint32_t mask) { mask_ = mask; }
+  void set_mask(uint32_t mask) {
+    mask_ = mask;
+    has_changed();
+  }
+  /// Rises with every change.
+  uint64_t version() const { return version_; }
   /// The bytes of copied buffers and of those in a file; 0 for shared ones.
   virtual size_t copied_bytes() const = 0;
   /// What the geometry is to hold other contents of one day, and what is committed is to keep;
@@ -40,6 +45,7 @@ class Geometry : public Object<Geometry> {
   Geometry(Device& device, GeometryKind kind, uint32_t mask)
       : device_(device), kind_(kind), mask_(mask) {}
   ~Geometry() = default;
+  void has_changed() { ++version_; }
 
  private:
   /// Calls destroy_object with the object as what it is.
@@ -48,6 +54,7 @@ class Geometry : public Object<Geometry> {
   Reference<Device> device_;
   GeometryKind kind_;
   uint32_t mask_;
+  uint64_t version_ = 0;
 };
 
 /// A geometry with its number in a scene.

@@ -146,17 +146,28 @@ void Scene::watch(Run&& run) {
 }
 
 void Scene::commit() {
-  watch([this](const Parallel& parallel) { build(parallel); });
+  watch([this](const Parallel& parallel) { build(false, parallel); });
 }
 
-void Scene::build(const Parallel& parallel) {
+/// What was committed by the same parameters with a tree for each mesh; else nullptr.
+const CommittedScene* Scene::sharable() const {
+  const bool is_same = committed_.get() && parameters_ == committed_parameters_;
+  return is_same && !committed_->meshes().empty() ? committed_.get() : nullptr;
+}
+
+void Scene::build(bool refits, const Parallel& parallel) {
   Memory& memory = device_->memory();
   const Array<AttachedGeometry> attached = attached_geometries();
-  Reference<CommittedScene> built = Reference<CommittedScene>::adopt(make_object<CommittedScene>(
-      memory, *device_, attached.data(), attached.size(), parameters_,
-      std::span<const RepresentativeRay>(rays_.data(), rays_.size()), parallel));
+  const std::span<const RepresentativeRay> rays(rays_.data(), rays_.size());
+  const bool is_two_level = parameters_.whole(KIWAMI_PARAMETER_TWO_LEVEL) != 0;
+  Reference<CommittedScene> built = Reference<CommittedScene>::adopt(
+      is_two_level ? make_object<CommittedScene>(memory, *device_, attached.data(), attached.size(),
+                                                 parameters_, rays, sharable(), refits, parallel)
+                   : make_object<CommittedScene>(memory, *device_, attached.data(), attached.size(),
+                                                 parameters_, rays, parallel));
   parallel.finish();
   committed_ = std::move(built);
+  committed_parameters_ = parameters_;
   retired_ = {};
   log_skipped(*device_, committed_->info());
 }
@@ -176,15 +187,16 @@ void Scene::refit() {
 
 void Scene::refit(const Parallel& parallel) {
   const Array<AttachedGeometry> attached = attached_geometries();
-  if (!committed_.get() || !committed_->fits(attached.data(), attached.size())) {
-    build(parallel);
+  const bool is_two_level = parameters_.whole(KIWAMI_PARAMETER_TWO_LEVEL) != 0;
+  if (!committed_.get() || is_two_level || !committed_->fits(attached.data(), attached.size())) {
+    build(true, parallel);
     return;
   }
   parallel.begin_stage(kRefitted, 0);
   const Reference<CommittedScene> moved = take_refittable(parallel);
   const uint64_t refit_count = committed_->info().refit_count + 1;
   if (!moved->refit(attached.data(), attached.size(), refit_count, parallel)) {
-    build(parallel);
+    build(true, parallel);
     return;
   }
   parallel.finish();

@@ -69,11 +69,13 @@ class Scene : public Object<Scene> {
   /// Calls run(parallel), whose tasks are told to who wants to know.
   template <typename Run>
   void watch(Run&& run);
-  void build(const Parallel& parallel);
+  void build(bool refits, const Parallel& parallel);
+  const CommittedScene* sharable() const;
   void refit(const Parallel& parallel);
 
   Reference<Device> device_;
   SceneParameters parameters_;
+  SceneParameters committed_parameters_;  ///< of the last commit
   kiwami_progress progress_ = nullptr;
   void* progress_user_ = nullptr;
   Array<RepresentativeRay> rays_;

@@ -38,6 +38,7 @@ constexpr NumberedBounds kBounds[] = {
     {KIWAMI_PARAMETER_LBVH_DELTA, {0, 1, 0, true}},
     {KIWAMI_PARAMETER_LBVH_CHUNK_SIZE, {1, 16, 1, true}},
     {KIWAMI_PARAMETER_LAYOUT, {0, 1, KIWAMI_LAYOUT_FAST, true}},
+    {KIWAMI_PARAMETER_TWO_LEVEL, {0, 1, 0, true}},
     {KIWAMI_PARAMETER_QUALITY, {0, 2, KIWAMI_QUALITY_BALANCED, true}},
     {KIWAMI_PARAMETER_REBRAID, {0, 2, KIWAMI_REBRAID_OFF, true}},
     {KIWAMI_PARAMETER_REBRAID_BUDGET, {0.0, 64.0, 2.0, false}},
@@ -148,6 +149,12 @@ void SceneParameters::set_optimizers(std::span<const uint32_t> methods) {
   for (const uint32_t method : methods) check_method(KIWAMI_STAGE_OPTIMIZER, "optimizer", method);
   std::copy(methods.begin(), methods.end(), optimizers_);
   optimizer_count_ = methods.size();
+}
+
+bool SceneParameters::operator==(const SceneParameters& other) const {
+  return std::equal(std::begin(values_), std::end(values_), std::begin(other.values_)) &&
+         std::equal(optimizers_, optimizers_ + optimizer_count_, other.optimizers_,
+                    other.optimizers_ + other.optimizer_count_);
 }
 
 }  // namespace kiwami

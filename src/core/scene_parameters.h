@@ -45,6 +45,8 @@ class SceneParameters {
   void set_optimizers(std::span<const uint32_t> methods);
   std::span<const uint32_t> optimizers() const { return {optimizers_, optimizer_count_}; }
 
+  bool operator==(const SceneParameters& other) const;
+
   double operator[](uint32_t parameter) const { return values_[parameter]; }
   /// The value of a parameter of whole numbers.
   uint32_t whole(uint32_t parameter) const { return static_cast<uint32_t>(values_[parameter]); }

@@ -18,6 +18,9 @@ class SceneParts {
   /// Of count geometries by rising geometry_id. Throws Error.
   void build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan);
 
+  /// Adds a part that lies elsewhere, unless it is empty. Its box and its counts are not added.
+  void add(const PartTree& tree, const ScenePart& view);
+
   /// Those that are not empty; they point into this object.
   const ScenePart* views() const { return views_; }
   uint32_t count() const { return count_; }
@@ -34,14 +37,12 @@ class SceneParts {
   void validate(Memory& memory, const Parallel& parallel) const;
 
  private:
-  void add(const PartTree& tree, const ScenePart& view);
-
   SceneInstances instances_;
   ShapePart shapes_[3] = {ShapePart(ShapeKind::kSphere), ShapePart(ShapeKind::kDisc),
                           ShapePart(ShapeKind::kCurve)};
   UserPart user_;
   MotionTree motion_;
-  ScenePart views_[6];
+  ScenePart views_[7];
   uint32_t count_ = 0;
 };
 

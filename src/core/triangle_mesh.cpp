@@ -136,7 +136,10 @@ void TriangleMesh::update_vertices(const void* vertices, uint64_t offset, uint64
   const size_t step = stride != 0 ? static_cast<size_t>(stride) : kElementSize;
   if (view_.vertex_count == 0) return;
   if (!vertices) {
-    if (shares_buffers_) return;
+    if (shares_buffers_) {
+      has_changed();
+      return;
+    }
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "vertices is NULL for a mesh of %zu copied vertices, expected the vertices",
                 view_.vertex_count);
@@ -146,6 +149,7 @@ void TriangleMesh::update_vertices(const void* vertices, uint64_t offset, uint64
   if (shares_buffers_) {
     view_.vertices = first;
     view_.vertex_stride = step;
+    has_changed();
     return;
   }
   if (!spare_vertices_.get() || spare_vertices_->is_shared() ||
@@ -157,6 +161,7 @@ void TriangleMesh::update_vertices(const void* vertices, uint64_t offset, uint64
   std::swap(vertices_, spare_vertices_);
   view_.vertices = vertices_->bytes().data();
   view_.vertex_stride = kElementSize;
+  has_changed();
 }
 
 void TriangleMesh::check_indices() const {

@@ -10,6 +10,7 @@
 #include "kernels/shape-leaf-inl.h"
 #include "kernels/user-leaf-inl.h"
 #include "wide/instance_part.h"
+#include "wide/mesh_part.h"
 
 namespace kiwami {
 namespace KIWAMI_ISA {
@@ -129,9 +130,39 @@ struct GeneralTraversal {
                             query.best_bound};
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
+      case PartKind::kMeshes: {
+        MeshVisitor visitor{*this, scene, *static_cast<const MeshPart*>(part.data),
+                            ray,   ready, query.best_bound};
+        return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
+      }
     }
     return false;
   }
+
+  /// Enters the trees of meshes, by the same ray.
+  struct MeshVisitor {
+    static constexpr bool kOrdered = Query::kOrdered;
+
+    GeneralTraversal& traversal;
+    const SceneView& scene;
+    const MeshPart& part;
+    const UnalignedRay& ray;
+    const ReadyRay& ready;
+    float best_bound;
+
+    bool visit_block(const TreeView& tree, ChildReference reference, Probe&) {
+      const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, reference);
+      for (uint32_t lanes = reference.mask(); lanes; lanes &= lanes - 1) {
+        const SceneView& mesh = *part.scenes[block.id[__builtin_ctz(lanes)]];
+        const auto level = traversal.probe.enter(ready);
+        if (traversal.visit_scene(mesh, ray)) return true;
+        traversal.probe.leave(level);
+        traversal.query.set_level(scene, ready, traversal.query.reach());
+        best_bound = traversal.query.best_bound;
+      }
+      return false;
+    }
+  };
 
   /// Enters the instances in the leaves of a part.
   struct InstanceVisitor {

@@ -30,7 +30,7 @@ template <int N>
 struct CountingProbe {
   static constexpr bool kNeedsEntry = true;
 
-  /// The leaf of an instance that was entered, as the ray outside sees it.
+  /// The leaf of an instance or a mesh's tree that was entered, as the ray outside sees it.
   struct Level {
     const ReadyRay* ray;
     float leaf_entry;
@@ -39,7 +39,8 @@ struct CountingProbe {
   TraversalCounters& counters;
   float leaf_entry = 0.0f;
   uint32_t depth = 0;
-  Level levels[KIWAMI_MAX_INSTANCE_DEPTH] = {};
+  // Within the last instance there may be the tree of a mesh.
+  Level levels[KIWAMI_MAX_INSTANCE_DEPTH + 1] = {};
 
   void on_node() { ++counters.node_visits; }
   void on_leaf(float entry) {

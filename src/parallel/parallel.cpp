@@ -145,12 +145,24 @@ Parallel::Parallel(const Parallel& other, Progress& progress)
       runner_user_(other.runner_user_),
       width_(other.width_) {}
 
+Parallel Parallel::part_of(const Parallel& other, bool on_one_thread) {
+  Parallel part;
+  part.progress_ = other.progress_;
+  part.is_part_ = true;
+  if (on_one_thread) return part;
+  part.arena_ = other.arena_;
+  part.runner_ = other.runner_;
+  part.runner_user_ = other.runner_user_;
+  part.width_ = other.width_;
+  return part;
+}
+
 void Parallel::begin_stage(double end, size_t expected_tasks) const {
-  if (progress_) progress_->begin_stage(end, expected_tasks);
+  if (progress_ && !is_part_) progress_->begin_stage(end, expected_tasks);
 }
 
 void Parallel::finish() const {
-  if (progress_) progress_->finish();
+  if (progress_ && !is_part_) progress_->finish();
 }
 
 void Parallel::check_cancelled() const {

@@ -21,8 +21,12 @@ class Parallel {
            unsigned runner_width);
   /// The same threads, for loops that report each of their tasks to progress, which may end them.
   Parallel(const Parallel& other, Progress& progress);
+  /// For a part of what other does: its tasks are told to the same progress, but not its stages.
+  /// For loops within loops, on the thread that calls.
+  static Parallel part_of(const Parallel& other, bool on_one_thread);
   ~Parallel();
   Parallel(const Parallel&) = delete;
+  Parallel(Parallel&&) = default;
   Parallel& operator=(const Parallel&) = delete;
 
   /// How many indices run at once, at least 1.
@@ -58,6 +62,7 @@ class Parallel {
   }
 
  private:
+  Parallel() = default;
   void run(size_t count, kiwami_parallel_task task, void* data) const;
 
   void run_unwatched(size_t count, kiwami_parallel_task task, void* data) const;
@@ -65,9 +70,10 @@ class Parallel {
   struct Arena;
   std::shared_ptr<Arena> arena_;
   Progress* progress_ = nullptr;
-  kiwami_parallel_runner runner_;
-  void* runner_user_;
-  unsigned width_;
+  bool is_part_ = false;
+  kiwami_parallel_runner runner_ = nullptr;
+  void* runner_user_ = nullptr;
+  unsigned width_ = 1;
 };
 
 }  // namespace kiwami

@@ -116,13 +116,13 @@ struct GeometryRange {
 };
 
 /// What the leaves of a part's tree hold.
-enum class PartKind : uint32_t { kInstances, kShapes, kUser, kMovingTriangles };
+enum class PartKind : uint32_t { kInstances, kShapes, kUser, kMovingTriangles, kMeshes };
 
 /// A tree of a scene beside that of its triangles, with leaves of ids. Plain data.
 struct ScenePart {
   PartKind kind;
   TreeView tree;
-  const void* data;  ///< by kind: InstancePart
+  const void* data;  ///< by kind: InstancePart, MeshPart
   // Of a ray whose origin has a coordinate beyond far_origin, the slabs are wider by
   // far_origin_margin times what it is beyond.
   float far_origin, far_origin_margin;

@@ -228,8 +228,11 @@ TEST(Change, MasksAndOtherMeshesTakeEffectWithARefit) {
 /// A scene of several meshes under changes, and what it should be.
 class ChangingScene {
  public:
-  ChangingScene(const Device& device, uint64_t number)
-      : device_(device), random_(number, 3), scene_(make_scene(device)) {}
+  ChangingScene(const Device& device, uint64_t number, bool is_two_level)
+      : device_(device), random_(number, 3), scene_(make_scene(device)) {
+    EXPECT_EQ(kiwami_scene_set_parameter(scene_.get(), KIWAMI_PARAMETER_TWO_LEVEL, is_two_level),
+              KIWAMI_OK);
+  }
 
   void change() {
     const uint32_t place = random_.below(kPlaces);
@@ -334,14 +337,16 @@ class ChangingScene {
   std::vector<std::unique_ptr<Triangles>> kept_;
 };
 
-TEST(Change, HostileSequencesGiveTheAnswersOfNewScenes) {
+class HostileSequences : public testing::TestWithParam<bool> {};
+
+TEST_P(HostileSequences, GiveTheAnswersOfNewScenes) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed()));
   const Device device = make_device();
   const std::vector<kiwami_ray> rays = random_rays(300, seed());
   const size_t sequences = kiwami_tests::case_budget(40);
   for (size_t i = 0; i < sequences; ++i) {
     SCOPED_TRACE(i);
-    ChangingScene changing(device, seed() + i);
+    ChangingScene changing(device, seed() + i, GetParam());
     Random random(seed() + i);
     for (int step = 0; step < 12; ++step) {
       for (uint32_t changes = random.below(4); changes != 0; --changes) changing.change();
@@ -351,6 +356,8 @@ TEST(Change, HostileSequencesGiveTheAnswersOfNewScenes) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Change, HostileSequences, testing::Values(false, true));
 
 TEST(Refit, NeedsNoNewMemoryFrameByFrame) {
   Random random(seed());

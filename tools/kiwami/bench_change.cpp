@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kiwami/bench_change.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -115,10 +116,92 @@ class ChangeBench {
   Box box_{};
 };
 
+/// So many copies of all meshes of a scene in one, in a cube.
+SceneFile copies_of(const SceneFile& file, uint32_t count) {
+  Mesh object;
+  for (const Mesh& mesh : file.meshes) {
+    const auto first = static_cast<uint32_t>(object.vertex_count());
+    object.vertices.insert(object.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const uint32_t index : mesh.indices) object.indices.push_back(first + index);
+  }
+  float extent = 0.0f;
+  for (const float coordinate : object.vertices) extent = std::max(extent, std::fabs(coordinate));
+  const auto side = static_cast<uint32_t>(std::ceil(std::cbrt(static_cast<double>(count))));
+  SceneFile copies;
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint32_t place[3] = {i % side, i / side % side, i / side / side};
+    copies.meshes.push_back(object);
+    std::vector<float>& vertices = copies.meshes.back().vertices;
+    for (size_t k = 0; k < vertices.size(); ++k) {
+      vertices[k] += 2.5f * extent * static_cast<float>(place[k % 3]);
+    }
+  }
+  return copies;
+}
+
 }  // namespace
 
 std::vector<ChangeRow> run_change(const std::string& scene, const BenchSettings& settings) {
   return ChangeBench(scene, settings).run();
+}
+
+std::vector<EditRow> run_edit(const std::string& scene, uint32_t objects,
+                              const BenchSettings& settings) {
+  const SceneFile copies = copies_of(load_known_scene(scene), objects);
+  BuildOptions options = settings.build;
+  options.parameters.push_back({KIWAMI_PARAMETER_TWO_LEVEL, 1.0});
+  std::vector<EditRow> rows;
+  for (const uint32_t isa : settings.isas) {
+    for (const uint32_t threads : settings.threads) {
+      const Device device(isa, threads);
+      check_threads(device, threads);
+      SceneFile moved = copies;
+      std::vector<Contender> contenders(2);
+      std::unique_ptr<BuiltScene> built;
+      contenders[0] = {[&] { built.reset(); },
+                       [&] { built = std::make_unique<BuiltScene>(device, moved, options); },
+                       [] {}};
+      const double build = median(interleaved_seconds(
+          {contenders.data(), 1}, std::min(settings.rounds, kMostBuilds), settings.clock)[0]);
+      size_t round = 0;
+      contenders[1] = {[&] {
+                         // Any of them, in an order of no pattern.
+                         round = (round + moved.meshes.size() * 5 / 8 + 1) % moved.meshes.size();
+                         for (float& x : moved.meshes[round].vertices) x += 0.125f;
+                       },
+                       [&] { built->commit_moved(round); }, [] {}};
+      const double edit =
+          median(interleaved_seconds({&contenders[1], 1}, settings.rounds, settings.clock)[0]);
+      rows.push_back({{scene, built->info().triangle_count, threads,
+                       kiwami_isa_name(device.info().isa), built->info().bvh_width},
+                      objects,
+                      edit * 1e3,
+                      build * 1e3});
+    }
+  }
+  return rows;
+}
+
+nlohmann::ordered_json to_json(const EditRow& row) {
+  nlohmann::ordered_json json;
+  json["scene"] = row.of.scene;
+  json["triangles"] = row.of.triangles;
+  json["objects"] = row.objects;
+  json["threads"] = row.of.threads;
+  json["isa"] = row.of.isa;
+  json["width"] = row.of.width;
+  json["edit_ms"] = row.edit_milliseconds;
+  json["build_ms"] = row.build_milliseconds;
+  return json;
+}
+
+void print_row(const EditRow& row) {
+  std::printf("\n%s: %s objects, %s triangles; %s, %u wide, %u thread%s\n", row.of.scene.c_str(),
+              grouped(row.objects).c_str(), grouped(row.of.triangles).c_str(), row.of.isa.c_str(),
+              row.of.width, row.of.threads, row.of.threads == 1 ? "" : "s");
+  std::printf("  edit of one %.2f ms; build of all %.1f ms; %.2f %%\n", row.edit_milliseconds,
+              row.build_milliseconds, 100.0 * row.edit_milliseconds / row.build_milliseconds);
+  std::fflush(stdout);
 }
 
 nlohmann::ordered_json to_json(const ChangeRow& row, const std::string& peer) {

@@ -46,6 +46,7 @@ struct BenchOptions {
   bool change = false;
   std::string queries;
   uint32_t max_hits = 8;
+  uint32_t edit = 0;
   uint32_t rounds = 5;
   uint64_t ray_count = 1u << 20;
   std::string clock = "wall";
@@ -239,6 +240,20 @@ int run_query_table(const BenchOptions& options, const BenchSettings& settings,
   return all_right ? 0 : kWrongAnswer;
 }
 
+/// Commits of scenes of many objects in place of rays.
+int run_edit_table(const BenchOptions& options, const BenchSettings& settings,
+                   const std::vector<std::string>& scenes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const std::string& scene : scenes) {
+    for (const EditRow& row : run_edit(scene, options.edit, settings)) {
+      print_row(row);
+      json.push_back(to_json(row));
+    }
+    if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
+  }
+  return 0;
+}
+
 int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   const std::vector<std::string> scenes = choose_scenes(options);
@@ -249,6 +264,7 @@ int run(const BenchOptions& options) {
   }
   if (!options.json.empty()) check_writable("--json", options.json);
   if (!options.pipelines.empty()) return run_pipeline_table(options, settings, scenes);
+  if (options.edit != 0) return run_edit_table(options, settings, scenes);
   if (options.change) return run_change_table(options, settings, scenes);
   if (!options.structures.empty()) return run_structure_table(options, settings, scenes);
   if (!options.queries.empty()) return run_query_table(options, settings, scenes);
@@ -351,6 +367,11 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
                          "filter functions");
   command.add_option("--max-hits", options.max_hits, "Hits of a ray in --queries; 0: all")
       ->capture_default_str();
+  command
+      .add_option("--edit", options.edit,
+                  "Commits of so many copies of the scene, a tree for each, when one has moved, in "
+                  "place of rays")
+      ->check(whole_number(1, 1000000));
   command.add_option("--rounds", options.rounds, "Runs of each side; their medians count")
       ->check(whole_number(1, 1000))
       ->capture_default_str();

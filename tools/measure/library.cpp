@@ -45,6 +45,7 @@ constexpr struct {
                    {"lbvh_delta", KIWAMI_PARAMETER_LBVH_DELTA},
                    {"lbvh_chunk_size", KIWAMI_PARAMETER_LBVH_CHUNK_SIZE},
                    {"layout", KIWAMI_PARAMETER_LAYOUT},
+                   {"two_level", KIWAMI_PARAMETER_TWO_LEVEL},
                    {"quality", KIWAMI_PARAMETER_QUALITY},
                    {"rebraid", KIWAMI_PARAMETER_REBRAID},
                    {"rebraid_budget", KIWAMI_PARAMETER_REBRAID_BUDGET}};
@@ -279,6 +280,11 @@ void BuiltScene::build_instances(kiwami_device* device, const SceneFile& file,
   info_.node_fill = shown.node_fill / static_cast<double>(std::max<uint64_t>(shown.node_count, 1));
   info_.leaf_fill =
       shown.leaf_fill / static_cast<double>(std::max<uint64_t>(shown.leaf_block_count, 1));
+}
+
+void BuiltScene::commit_moved(size_t mesh) {
+  check(kiwami_triangle_mesh_update_vertices(geometries_[mesh], nullptr, 0, 0), nullptr);
+  info_ = commit(scene_);
 }
 
 kiwami_scene* BuiltScene::make_scene(kiwami_device* device, const BuildOptions& options) {

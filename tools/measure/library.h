@@ -101,6 +101,8 @@ class BuiltScene : public Tracer {
 
   /// After the file's vertices have moved; not of a scene with instances.
   void refit();
+  /// Commits anew after those of one mesh have moved.
+  void commit_moved(size_t mesh);
 
   /// Of a scene with instances: counts of triangles are those in the world, bytes and seconds are
   /// those of all scenes, fill rates their means.

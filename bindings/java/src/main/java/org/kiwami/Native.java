@@ -64,6 +64,7 @@ final class Native {
   static final int KIWAMI_PARAMETER_QUALITY = 30;
   static final int KIWAMI_PARAMETER_REBRAID = 40;
   static final int KIWAMI_PARAMETER_REBRAID_BUDGET = 41;
+  static final int KIWAMI_PARAMETER_TWO_LEVEL = 42;
   static final int KIWAMI_REBRAID_OFF = 0;
   static final int KIWAMI_REBRAID_FULL = 1;
   static final int KIWAMI_REBRAID_ROOTS = 2;
