@@ -153,9 +153,10 @@ TEST(Command, RendersInstancesAsTheyAreFlattened) {
 }
 
 TEST(Command, BenchMeasuresInstances) {
-  const CommandResult result =
-      run_command({"bench", "room:3000", "--instanced", "--ray-count", "400", "--rounds", "1",
-                   "--rays", "bounce,ao", "--threads", "1", "--param", "rebraid=1"});
+  // Not with AVX-512: rtcOccluded16 of Embree 3.13.5 does not end there where there are instances.
+  const CommandResult result = run_command(
+      {"bench", "room:3000", "--instanced", "--ray-count", "400", "--rounds", "1", "--rays",
+       "bounce,ao", "--threads", "1", "--param", "rebraid=1", "--isa", "sse"});
   EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
   EXPECT_NE(result.output.find("room:3000 instanced"), std::string::npos) << result.output;
   EXPECT_EQ(run_command({"bench", "room:3000", "--instanced", "--vs", "binary"}).exit_code, 2);
