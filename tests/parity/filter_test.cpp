@@ -100,9 +100,11 @@ std::string difference(const kiwami_scene* scene, const std::vector<kiwami_ray>&
              std::to_string(any[i]) + ", closest " + describe(closest[i]);
     }
   }
+  size_t total = 1;
+  for (const HitList& list : lists) total += list.size();
+  HitList hits(total);
   for (const uint32_t limit : {1u, 3u, 0u}) {
     std::vector<uint64_t> offsets(count + 1);
-    HitList hits(1 << 20);
     check(kiwami_multi_hit(scene, rays.data(), 0, count, limit, hits.data(), hits.size(),
                            offsets.data(), &query));
     for (size_t i = 0; i < count; ++i) {

@@ -167,7 +167,9 @@ SceneHandle masked_scene(kiwami_device* device, const Mesh& mesh, const RandomMa
 std::string difference(const kiwami_scene* scene, const std::vector<kiwami_ray>& rays,
                        const kiwami_query& query, const std::vector<HitList>& lists) {
   const size_t count = rays.size();
-  HitList closest(count), hits(1 << 18);
+  size_t total = 1;
+  for (const HitList& list : lists) total += list.size();
+  HitList closest(count), hits(total);
   std::vector<uint8_t> any(count);
   std::vector<uint32_t> counts(count);
   std::vector<uint64_t> offsets(count + 1);

@@ -391,6 +391,20 @@ TEST(Bench, ARowBeginsWithTheSameMembersInTheSameOrder) {
   }
 }
 
+TEST(Bench, RefitsAndEditsHaveTheirRows) {
+  const Json refits = bench_rows({"sphere:4", "--change", "--threads", "1"});
+  ASSERT_EQ(refits.size(), 1u);
+  EXPECT_GT(refits.at(0).at("refit_ms"), 0.0);
+  EXPECT_GT(refits.at(0).at("refitted_sah"), 0.0);
+  EXPECT_EQ(refits.at(0).contains("refit_ratio"), has_embree());
+  EXPECT_FALSE(refits.at(0).contains("wrong"));
+  const Json edits = bench_rows({"sphere:2", "--edit", "50", "--threads", "1"});
+  ASSERT_EQ(edits.size(), 1u);
+  EXPECT_EQ(edits.at(0).at("objects"), 50);
+  EXPECT_GT(edits.at(0).at("build_ms"), 0.0);
+  EXPECT_GT(edits.at(0).at("edit_ms"), 0.0);
+}
+
 TEST(Bench, APublicSceneHasItsOwnCamera) {
   const std::string path = shared_scene("sponza.tri.gz");
   if (path.empty()) GTEST_SKIP() << "SKIPPED: the shared scenes are absent";
