@@ -11,7 +11,11 @@ using ull = unsigned long long;
 
 template <typename... Values>
 [[noreturn]] void fail(const char* format, Values... values) {
-  throw Error(KIWAMI_ERROR_INVALID_FILE, format, values...);
+  if constexpr (sizeof...(values) == 0) {
+    throw Error(KIWAMI_ERROR_INVALID_FILE, "%s", format);
+  } else {
+    throw Error(KIWAMI_ERROR_INVALID_FILE, format, values...);
+  }
 }
 
 /// The versions of sections that this library reads: all are of version 1.

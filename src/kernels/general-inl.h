@@ -126,7 +126,9 @@ struct GeneralTraversal {
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
       case PartKind::kUser: {
-        UserVisitor visitor{query, *static_cast<const UserSource*>(part.data), ready, ray,
+        kiwami_ray aligned;
+        __builtin_memcpy(&aligned, &ray, sizeof aligned);
+        UserVisitor visitor{query, *static_cast<const UserSource*>(part.data), ready, aligned,
                             query.best_bound};
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
@@ -194,15 +196,15 @@ struct GeneralTraversal {
       if ((ray.mask & mask) == 0) return false;
       const kiwami_ray local = transform(instance, ray);
       if (!is_traceable(local)) return false;
-      Query& query = traversal.query;
-      query.path.number[query.path.depth++] = number;
+      Query& asked = traversal.query;
+      asked.path.number[asked.path.depth++] = number;
       const auto level = traversal.probe.enter(ready);
       const bool is_done = traversal.visit_from(*prototype.scene, local, start);
       traversal.probe.leave(level);
-      --query.path.depth;
+      --asked.path.depth;
       if (is_done) return true;
-      query.set_level(scene, ready, query.reach());
-      best_bound = query.best_bound;
+      asked.set_level(scene, ready, asked.reach());
+      best_bound = asked.best_bound;
       return false;
     }
   };
@@ -217,11 +219,11 @@ struct GeneralTraversal {
     WideRay<double> ray;
     float best_bound;
 
-    bool visit_block(const TreeView& tree, ChildReference reference, Probe& probe) {
+    bool visit_block(const TreeView& tree, ChildReference reference, Probe& counting) {
       const bool is_done = visit_shapes<N>(
           source, index_leaf_at<N>(tree.memory, reference), reference.mask(), ready, ray,
           [&](const ShapeCrossing& crossing) {
-            probe.on_accept_in_leaf(ready, crossing.t);
+            counting.on_accept_in_leaf(ready, crossing.t);
             return query.accept(
                 crossing.t, crossing.shape.view->geometry_id, crossing.shape.primitive,
                 [&](kiwami_hit& hit) { describe_crossing(source, ray, crossing, hit); });
@@ -246,12 +248,12 @@ struct GeneralTraversal {
                                best_bound, entry);
     }
 
-    bool visit_block(const TreeView& tree, ChildReference reference, Probe& probe) {
+    bool visit_block(const TreeView& tree, ChildReference reference, Probe& counting) {
       const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, reference);
       GatheredBlock<N> frozen;
       frozen.source = block.id;
       const uint32_t lanes = freeze_leaf<N>(motion, block, reference.mask(), time, frozen);
-      const bool is_done = query.visit_leaf(frozen, lanes, probe);
+      const bool is_done = query.visit_leaf(frozen, lanes, counting);
       best_bound = query.best_bound;
       return is_done;
     }

@@ -15,7 +15,11 @@ namespace {
 
 template <typename... Values>
 [[noreturn]] void fail(const char* format, Values... values) {
-  throw Error(KIWAMI_ERROR_VALIDATION, format, values...);
+  if constexpr (sizeof...(values) == 0) {
+    throw Error(KIWAMI_ERROR_VALIDATION, "%s", format);
+  } else {
+    throw Error(KIWAMI_ERROR_VALIDATION, format, values...);
+  }
 }
 
 /// What a tree was built over: triangles, or boxes by rising id.
