@@ -342,7 +342,8 @@ void MotionTree::check_bounds(const Parallel& parallel) const {
   constexpr float parts[] = {0.0f, 0.3f, 0.5f, 0.9f};
   const TimeSteps& time = data_.time;
   parallel.for_each(size_t{4} * time.segment_count, [&](size_t i) {
-    const float place = static_cast<float>(i / 4) + parts[i % 4];
+    const size_t segment = i / 4;
+    const float place = static_cast<float>(segment) + parts[i % 4];
     const float at =
         time.begin + (time.end - time.begin) * (place / static_cast<float>(time.segment_count));
     BoundsChecker<N>(tree_.tree, data_, std::min(at, time.end)).check(root);

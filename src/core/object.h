@@ -66,6 +66,7 @@ class Reference {
   Reference(const Reference& other) : object_(other.object_) {
     if (object_) object_->retain();
   }
+  Reference(Reference&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
   Reference& operator=(Reference other) noexcept {
     std::swap(object_, other.object_);
     return *this;

@@ -264,11 +264,10 @@ kiwami_file_info describe_file(Device& device, const kiwami_load_desc& desc) {
   info.library_version = reader.header().library_version;
   info.section_count = reader.header().section_count;
   info.file_bytes = reader.header().file_bytes;
-  if (!is_known_version(reader.header()) || !reader.knows_sections()) {
-    info.fit = KIWAMI_FIT_NONE;
-  } else if (info.kind == KIWAMI_FILE_SCENE) {
+  const bool is_known = is_known_version(reader.header()) && reader.knows_sections();
+  if (is_known && info.kind == KIWAMI_FILE_SCENE) {
     describe_scene(reader, device, info);
-  } else if (info.kind == KIWAMI_FILE_BVH) {
+  } else if (is_known && info.kind == KIWAMI_FILE_BVH) {
     describe_bvh(reader, info);
   } else {
     info.fit = KIWAMI_FIT_NONE;
