@@ -2,6 +2,7 @@
 #include "optimizers/rebraiding.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace kiwami {
@@ -42,7 +43,8 @@ class Rebraiding {
   Rebraiding(Array<BraidReference> roots, const BraidSource& source, const RebraidConfig& config,
              Memory& memory)
       : source_(source), config_(config), memory_(memory), sets_(memory) {
-    const auto free = static_cast<size_t>(config.budget * static_cast<double>(roots.size()) + 0.5);
+    const auto free =
+        static_cast<size_t>(std::lround(config.budget * static_cast<double>(roots.size())));
     const size_t count = roots.size();
     places_ = Array<BraidReference>(memory, count + free);
     std::copy(roots.begin(), roots.end(), places_.begin());
