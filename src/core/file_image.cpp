@@ -112,7 +112,8 @@ void FileImage::take_data(const kiwami_load_desc& desc) {
   size_ = static_cast<size_t>(desc.size);
   if ((desc.flags & KIWAMI_LOAD_MAP) == 0) {
     copy_ = Array<unsigned char>(device_->memory(), size_);
-    std::memcpy(copy_.data(), bytes, size_);
+    // An empty file has no bytes to point at, which memcpy may not be told.
+    if (size_ > 0) std::memcpy(copy_.data(), bytes, size_);
     data_ = copy_.data();
     return;
   }
