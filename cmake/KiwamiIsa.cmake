@@ -42,6 +42,15 @@ function(kiwami_add_isa isa)
   target_compile_definitions(${target} PRIVATE KIWAMI_ISA=${isa})
   target_compile_options(${target} PRIVATE ${ARG_FEATURES} -fno-lto -fno-exceptions -fno-rtti
                                            -fno-math-errno -fno-asynchronous-unwind-tables)
+  if(isa STREQUAL "scalar" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Vectors are plain arrays here: -O3 unrolls each of them, at three times the time of compiling.
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
+  endif()
+  if(KIWAMI_SANITIZE)
+    # Forced inlining makes functions of which every access is checked and every variable tracked:
+    # in full, they would take longer to compile than all of the rest.
+    target_compile_options(${target} PRIVATE -O1 -g1)
+  endif()
   if(isa STREQUAL "avx512" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC's own header reads an undefined register on purpose and warns of it (GCC bug 105593).
     target_compile_options(${target} PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized)

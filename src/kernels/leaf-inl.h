@@ -44,10 +44,14 @@ inline void find_corners(const TriangleMeshView& mesh, uint32_t primitive,
 /// The step from one element of a buffer to the next. Buffers without gaps are the rule, and a
 /// product with a constant is quicker.
 struct AnyStrides {
-  size_t vertex, index;
+  size_t vertex_stride, index_stride;
+
+  size_t vertex() const { return vertex_stride; }
+  size_t index() const { return index_stride; }
 };
 struct DenseStrides {
-  static constexpr size_t vertex = 3 * sizeof(float), index = 3 * sizeof(uint32_t);
+  static constexpr size_t vertex() { return 3 * sizeof(float); }
+  static constexpr size_t index() { return 3 * sizeof(uint32_t); }
 };
 
 /// A block of triangles that is not in the tree, and where the ids stand that it was made from:
@@ -87,8 +91,8 @@ inline void gather_indexed(const TriangleMeshView& mesh, const uint32_t (&primit
 #pragma GCC unroll 16
     for (int lane = 0; lane < N; ++lane) {
       const size_t index =
-          read_index(indices + primitives[lane] * strides.index + k * sizeof(uint32_t));
-      rows[lane] = vertices + index * strides.vertex;
+          read_index(indices + primitives[lane] * strides.index() + k * sizeof(uint32_t));
+      rows[lane] = vertices + index * strides.vertex();
     }
     vfloat<N> columns[3];
     gather_rows(rows, columns);
@@ -125,8 +129,8 @@ inline void gather_triangles(const SceneView& scene, const IndexBlock<N>& block,
   }
   if (last >= mesh.triangle_count || !mesh.indices) {
     gather_each<N>(scene, ids, out);
-  } else if (mesh.vertex_stride == DenseStrides::vertex &&
-             mesh.index_stride == DenseStrides::index) {
+  } else if (mesh.vertex_stride == DenseStrides::vertex() &&
+             mesh.index_stride == DenseStrides::index()) {
     gather_indexed<N>(mesh, primitives, DenseStrides(), out);
   } else {
     gather_indexed<N>(mesh, primitives, AnyStrides{mesh.vertex_stride, mesh.index_stride}, out);
