@@ -176,7 +176,7 @@ KIWAMI_API kiwami_result kiwami_bvh_desc_init(kiwami_bvh_desc* desc, size_t size
  *   errors    INVALID_ARGUMENT: NULL, a field of desc, a parameter or its value, an optimizer, a
  *             geometry of another device, boxes and a geometry at once, a builder or an optimizer
  *             that needs triangles or a binary tree that there is not; TOO_LARGE: a count beyond
- * its limit; OUT_OF_MEMORY; CALLBACK: the runner failed; VALIDATION:
+ *             its limit; OUT_OF_MEMORY; CALLBACK: the runner failed; VALIDATION:
  *             KIWAMI_PARAMETER_VALIDATE_BUILD found a broken invariant
  * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_bvh_build(kiwami_device* device, const kiwami_bvh_desc* desc,
@@ -189,8 +189,8 @@ KIWAMI_API kiwami_result kiwami_bvh_build(kiwami_device* device, const kiwami_bv
  *             whose vertices are read anew (see kiwami_triangle_mesh_update_vertices).
  *   count     the number of boxes; 0 for a tree over a mesh
  *   errors    INVALID_ARGUMENT: NULL, a wrong count, a stride too small, a primitive of the tree
- * that is out of range now (the tree stays as it was); INVALID_STATE: a tree of a scene;
- *             OUT_OF_MEMORY; CALLBACK: the runner failed
+ *             that is out of range now (the tree stays as it was); INVALID_STATE: a tree of a
+ *             scene; OUT_OF_MEMORY; CALLBACK: the runner failed
  * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_bvh_refit(kiwami_bvh* bvh, const void* boxes, size_t stride,
                                           size_t count);
@@ -198,7 +198,8 @@ KIWAMI_API kiwami_result kiwami_bvh_refit(kiwami_bvh* bvh, const void* boxes, si
 /* Checks every invariant of a tree: parents, children and depths, runs of primitives, boxes around
  * all that is below them, each primitive in a leaf.
  *   errors    INVALID_ARGUMENT: bvh is NULL; VALIDATION: the sentence of kiwami_last_error names
- * the node; OUT_OF_MEMORY [any thread]; since 0.1 */
+ *             the node; OUT_OF_MEMORY
+ * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_bvh_validate(const kiwami_bvh* bvh);
 
 /* Adds a reference. NULL is ignored. [any thread]; since 0.1 */

@@ -56,16 +56,19 @@ KIWAMI_API kiwami_result kiwami_instances_desc_init(kiwami_instances_desc* desc,
 
 /* Makes an array of instances, to be attached to a scene like any geometry. The instances of a
  * scene are numbered through, by the numbers of their geometries and then by their indices in the
- * arrays: a hit names this number. geometry   receives the handle, with one reference, or NULL on
- * error errors     INVALID_ARGUMENT: a NULL pointer, a scene of another device, an index at or
- * beyond scene_count, a stride too small, an extent that overflows, an unknown flag, a transform
- * that is not finite or singular: one whose condition number, in the norm of the greatest row sum,
- * is above 2^20, or that scales by more than 2^60 or less than 2^-60 (the sentence names the
- * instance); TOO_LARGE: a count beyond its limit; OUT_OF_MEMORY The commit of the outer scene also
- * fails with INVALID_ARGUMENT where shared buffers have become wrong by then, or where a shown
- * scene has another BVH width; INVALID_STATE: a shown scene was never committed; TOO_LARGE: paths
- * of more than KIWAMI_MAX_INSTANCE_DEPTH instances, or more than 2^32 - 2 instances. It reads the
- * shown scenes: their commits must not overlap with it. [any thread]; since 0.1 */
+ * arrays: a hit names this number.
+ *   geometry   receives the handle, with one reference, or NULL on error
+ *   errors     INVALID_ARGUMENT: a NULL pointer, a scene of another device, an index at or beyond
+ *              scene_count, a stride too small, an extent that overflows, an unknown flag, a
+ *              transform that is not finite or singular: one whose condition number, in the norm of
+ *              the greatest row sum, is above 2^20, or that scales by more than 2^60 or less than
+ *              2^-60 (the sentence names the instance); TOO_LARGE: a count beyond its limit;
+ *              OUT_OF_MEMORY
+ * The commit of the outer scene also fails with INVALID_ARGUMENT where shared buffers have become
+ * wrong by then, or where a shown scene has another BVH width; INVALID_STATE: a shown scene was
+ * never committed; TOO_LARGE: paths of more than KIWAMI_MAX_INSTANCE_DEPTH instances, or more than
+ * 2^32 - 2 instances. It reads the shown scenes: their commits must not overlap with it.
+ * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_instances_create(kiwami_device* device,
                                                  const kiwami_instances_desc* desc,
                                                  kiwami_geometry** geometry);

@@ -252,8 +252,9 @@ KIWAMI_API kiwami_result kiwami_light_tree_add_lights(kiwami_light_tree* tree,
 /* Adds the triangles of a mesh, as many lights.
  *   first_id  receives the number of triangle 0; may be NULL
  *   errors    INVALID_ARGUMENT: NULL, a field of desc, an index at or beyond vertex_count, a
- * radiance that is negative or not finite (then none was added); TOO_LARGE: more than 2^26 lights;
- * OUT_OF_MEMORY [one thread per object]; since 0.1 */
+ *             radiance that is negative or not finite (then none was added); TOO_LARGE: more than
+ *             2^26 lights; OUT_OF_MEMORY
+ * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_light_tree_add_mesh(kiwami_light_tree* tree,
                                                     const kiwami_light_mesh_desc* desc,
                                                     uint32_t* first_id);
@@ -300,15 +301,18 @@ KIWAMI_API kiwami_result kiwami_light_tree_commit(kiwami_light_tree* tree);
 
 /* Brings the committed tree up to date after lights and instances were set, keeping its shape:
  * fast, at the price of a tree that fits less and less. What it costs says
- * kiwami_light_tree_get_info. errors    INVALID_ARGUMENT: tree is NULL; INVALID_STATE: never
- * committed, lights or instances added since, or a light became distant (or an environment) or
- * ceased to be; OUT_OF_MEMORY [one thread per object]; since 0.1 */
+ * kiwami_light_tree_get_info.
+ *   errors    INVALID_ARGUMENT: tree is NULL; INVALID_STATE: never committed, lights or instances
+ *             added since, or a light became distant (or an environment) or ceased to be;
+ *             OUT_OF_MEMORY
+ * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_light_tree_refit(kiwami_light_tree* tree);
 
 /* Says what was committed.
  *   info      struct_size set by the caller; the fields that fit are filled
  *   errors    INVALID_ARGUMENT: tree or info is NULL, or struct_size is below 8; INVALID_STATE:
- * never committed [any thread after commit]; since 0.1 */
+ *             never committed
+ * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_light_tree_get_info(const kiwami_light_tree* tree,
                                                     kiwami_light_tree_info* info);
 
@@ -325,7 +329,8 @@ KIWAMI_API kiwami_result kiwami_light_tree_get_info(const kiwami_light_tree* tre
  *   errors     INVALID_ARGUMENT: tree is NULL, a field of query; INVALID_STATE: never committed, or
  *              LAZY_ROULETTE of a set without KIWAMI_LIGHT_TREE_WITH_ROULETTE;
  *              CALLBACK: the runner failed. With KIWAMI_DEVICE_VALIDATE also INVALID_ARGUMENT:
- * NULL, a stride too small, an extent that overflows. [any thread after commit]; since 0.1 */
+ *              NULL, a stride too small, an extent that overflows
+ * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_light_sample(const kiwami_light_tree* tree,
                                              const kiwami_light_receiver* receivers,
                                              size_t receiver_stride, kiwami_light_choice* choices,
@@ -336,8 +341,9 @@ KIWAMI_API kiwami_result kiwami_light_sample(const kiwami_light_tree* tree,
  * kiwami_light_sample, by the same query, where it is.
  *   receivers      as in kiwami_light_sample; their random numbers are not read
  *   lights         count names, light_stride bytes apart (0: sizeof(kiwami_light_name)). A name of
- * no light has probability 0. probabilities  receives count floats, probability_stride bytes apart
- * (0: 4) Otherwise as kiwami_light_sample. [any thread after commit]; since 0.1 */
+ *                  no light has probability 0.
+ *   probabilities  receives count floats, probability_stride bytes apart (0: 4)
+ * Otherwise as kiwami_light_sample. [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_light_pdf(const kiwami_light_tree* tree,
                                           const kiwami_light_receiver* receivers,
                                           size_t receiver_stride, const kiwami_light_name* lights,

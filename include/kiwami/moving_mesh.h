@@ -50,8 +50,10 @@ typedef struct kiwami_moving_mesh_desc {
 } kiwami_moving_mesh_desc;
 
 /* Fills *desc with the defaults: no vertices, no triangles, copied buffers, two steps from 0 to 1,
- * a mask of all ones. size      sizeof the struct as the caller knows it errors INVALID_ARGUMENT:
- * desc is NULL, or size is below 8 [any thread]; since 0.1 */
+ * a mask of all ones.
+ *   size      sizeof the struct as the caller knows it
+ *   errors    INVALID_ARGUMENT: desc is NULL, or size is below 8
+ * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_moving_mesh_desc_init(kiwami_moving_mesh_desc* desc, size_t size);
 
 /* Makes a moving triangle mesh.

@@ -180,7 +180,8 @@ KIWAMI_API void kiwami_scene_release(kiwami_scene* scene);
 
 /* Attaches a geometry; the scene holds a reference to it. Takes effect with the next commit.
  *   geometry_id   receives the number that hits report: the lowest that is free. May be NULL.
- *   errors        INVALID_ARGUMENT: NULL, or a geometry of another device; OUT_OF_MEMORY
+ *   errors        INVALID_ARGUMENT: NULL, a geometry of another device, or instances that show the
+ *                 scene itself, directly or through others; OUT_OF_MEMORY
  * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_attach(kiwami_scene* scene, kiwami_geometry* geometry,
                                              uint32_t* geometry_id);
@@ -260,8 +261,11 @@ KIWAMI_API const char* kiwami_method_name(uint32_t stage, uint32_t method);
  * commit that is cancelled returns KIWAMI_ERROR_CANCELLED, soon: no task begins any more; a method
  * that runs on one thread (such as KIWAMI_OPTIMIZER_REINSERTION) ends first. As after every error,
  * the last committed structure stays in use, the scene can be edited, and nothing is left of the
- * commit. function  NULL: nobody, the default user      handed to function as it is errors
- * INVALID_ARGUMENT: scene is NULL [one thread per object]; since 0.1 */
+ * commit.
+ *   function   NULL: nobody, the default
+ *   user       handed to function as it is
+ *   errors     INVALID_ARGUMENT: scene is NULL
+ * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_set_progress(kiwami_scene* scene, kiwami_progress function,
                                                    void* user);
 
@@ -276,16 +280,18 @@ KIWAMI_API kiwami_result kiwami_scene_commit(kiwami_scene* scene);
 /* Commits the scene as kiwami_scene_commit does, but keeps the tree where it can: it moves the
  * boxes of the last committed one, which is much sooner done than a build. The answers are those of
  * a build; the further things have moved against each other, the slower they come (sah_cost tells).
+ *
  * It can where the tree was built (not loaded), all attached and enabled geometries are triangle
- * meshes that have the numbers and
- * the triangle counts of the last commit, and no triangle can be hit that could not be hit when the
- * tree was built (nor, where leaves hold ids alone, the other way round); else it builds. Vertices,
- * indices and masks may be others; parameters that have changed wait for the next commit. Triangles
- * that can not be hit any more vanish, and come back when they can. Primitives that stand in
- * several leaves (spatial splits) get their whole box in each. From the first refit until the next
- * commit the scene keeps the structure before the last one, to write the next into it. errors    as
- * kiwami_scene_commit; on error the last committed structure stays in use [one thread per object];
- * since 0.1 */
+ * meshes that have the numbers and the triangle counts of the last commit, and no triangle can be
+ * hit that could not be hit when the tree was built (nor, where leaves hold ids alone, the other
+ * way round); else it builds. Vertices, indices and masks may be others; parameters that have
+ * changed wait for the next commit. Triangles that can not be hit any more vanish, and come back when they
+ * can. Primitives that stand in several leaves (spatial splits) get their whole box in each.
+ *
+ * From the first refit until the next commit the scene keeps the structure before the last one, to
+ * write the next into it.
+ *   errors    as kiwami_scene_commit; on error the last committed structure stays in use
+ * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_refit(kiwami_scene* scene);
 
 /* Says what the last commit made.

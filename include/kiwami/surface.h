@@ -54,8 +54,8 @@ KIWAMI_API kiwami_result kiwami_interpolation_init(kiwami_interpolation* interpo
  *   count     elements
  *   errors    INVALID_ARGUMENT: NULL, no triangle mesh, channels out of range, a primitive_id that
  *             is no triangle of the mesh, the number of an attribute that is not there, a stride
- * too small, an extent that overflows; what was written before is not told [any thread]; since 0.1
- */
+ *             too small, an extent that overflows; what was written before is not told
+ * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_interpolate(const kiwami_geometry* mesh,
                                             const kiwami_interpolation* interpolation,
                                             size_t count);
@@ -64,11 +64,12 @@ KIWAMI_API kiwami_result kiwami_interpolate(const kiwami_geometry* mesh,
  *   hits      count hits of the committed scene, hit_stride bytes apart (0: sizeof(kiwami_hit)), on
  *             triangle meshes outside of instances, or misses; NULL only if count is 0
  *   points    receives three floats each, point_stride bytes apart (0: 12): the point rounded to
- * the nearest floats; NaN for a miss, so that rays from there miss. NULL: not wanted errors
- * receives three floats each, error_stride bytes apart (0: 12): along no axis is the exact point
- * farther from the one told. NULL: not wanted errors    INVALID_STATE: the scene was never
- * committed. INVALID_ARGUMENT: NULL; a hit whose numbers are not in the scene, which is in an
- * instance, or not on a triangle mesh [any thread after commit]; since 0.1 */
+ *             the nearest floats; NaN for a miss, so that rays from there miss. NULL: not wanted
+ *   errors    receives three floats each, error_stride bytes apart (0: 12): along no axis is the
+ *             exact point farther from the one told. NULL: not wanted
+ * Returns INVALID_STATE: the scene was never committed; INVALID_ARGUMENT: NULL; a hit whose numbers
+ * are not in the scene, which is in an instance, or not on a triangle mesh.
+ * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_hit_points(const kiwami_scene* scene, const kiwami_hit* hits,
                                            size_t hit_stride, size_t count, float* points,
                                            size_t point_stride, float* errors, size_t error_stride);

@@ -86,8 +86,10 @@ KIWAMI_API kiwami_result kiwami_user_geometry_desc_init(kiwami_user_geometry_des
 
 /* Makes a user geometry.
  *   geometry   receives the handle, with one reference, or NULL on error: then destroy is not
- * called errors     INVALID_ARGUMENT: a NULL pointer, a callback missing, an unknown flag;
- * TOO_LARGE: a count beyond its limit; OUT_OF_MEMORY [any thread]; since 0.1 */
+ *              called
+ *   errors     INVALID_ARGUMENT: a NULL pointer, a callback missing, an unknown flag; TOO_LARGE: a
+ *              count beyond its limit; OUT_OF_MEMORY
+ * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_user_geometry_create(kiwami_device* device,
                                                      const kiwami_user_geometry_desc* desc,
                                                      kiwami_geometry** geometry);
