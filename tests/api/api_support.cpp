@@ -163,7 +163,9 @@ kiwami_hit closest_hit(const Scene& scene, const kiwami_ray& ray) {
 }
 
 bool are_equal(const std::vector<kiwami_hit>& a, const std::vector<kiwami_hit>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+  // An empty vector may have no address, which memcmp may not be told.
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
 }
 
 namespace {
