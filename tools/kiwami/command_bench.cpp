@@ -7,6 +7,7 @@
 
 #include "kiwami/bench.h"
 #include "kiwami/bench_change.h"
+#include "kiwami/bench_lights.h"
 #include "kiwami/bench_pipelines.h"
 #include "kiwami/bench_queries.h"
 #include "kiwami/bench_report.h"
@@ -17,6 +18,7 @@
 #include "kiwami/options.h"
 #include "kiwami/progress.h"
 #include "measure/bench_rays.h"
+#include "measure/emissive_lights.h"
 #include "scene/procedural.h"
 
 namespace kiwami::tools {
@@ -47,6 +49,7 @@ struct BenchOptions {
   std::string queries;
   uint32_t max_hits = 8;
   uint32_t edit = 0;
+  LightBenchOptions lights;
   uint32_t rounds = 5;
   uint64_t ray_count = 1u << 20;
   std::string clock = "wall";
@@ -254,6 +257,22 @@ int run_edit_table(const BenchOptions& options, const BenchSettings& settings,
   return 0;
 }
 
+/// The table of ways to choose among many lights.
+int run_light_table(const BenchOptions& options, const BenchSettings& settings,
+                    const std::vector<std::string>& scenes) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const std::string& scene : scenes) {
+    bool is_first = true;
+    run_lights(scene, options.lights, settings, [&](const LightRow& row) {
+      print_row(row, is_first);
+      is_first = false;
+      rows.push_back(to_json(row));
+    });
+    if (!options.json.empty()) write_file(options.json, rows.dump(1) + "\n");
+  }
+  return 0;
+}
+
 int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   const std::vector<std::string> scenes = choose_scenes(options);
@@ -268,6 +287,7 @@ int run(const BenchOptions& options) {
   if (options.change) return run_change_table(options, settings, scenes);
   if (!options.structures.empty()) return run_structure_table(options, settings, scenes);
   if (!options.queries.empty()) return run_query_table(options, settings, scenes);
+  if (options.lights.is_asked) return run_light_table(options, settings, scenes);
   const std::string peer = peer_name(settings);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   RatioSummary summary;
@@ -321,6 +341,27 @@ void add_scene_options(CLI::App& command, BenchOptions& options) {
       ->capture_default_str();
   add_instanced_option(command, options.instanced);
   add_view_options(command, options.view);
+}
+
+void add_light_options(CLI::App& command, LightBenchOptions& options) {
+  command.add_flag("--lights", options.is_asked,
+                   "A table of ways to choose among many lights in place of rays: a part of the "
+                   "scene's triangles shines");
+  command.add_option("--light-methods", options.methods,
+                     "Some of " + light_method_list() + ", between commas; by default all");
+  command.add_option("--light-widths", options.widths, "Children a node of trees over lights")
+      ->capture_default_str();
+  command.add_option("--light-share", options.share, "The part of the triangles that shines")
+      ->check(finite_number(0.0, 1.0))
+      ->capture_default_str();
+  command
+      .add_option("--light-samples", options.samples,
+                  "Choices a receiver at which errors are compared")
+      ->check(whole_number(1, 65536))
+      ->capture_default_str();
+  command.add_option("--light-receivers", options.receiver_count, "Points that the camera sees")
+      ->check(whole_number(1, 1u << 24))
+      ->capture_default_str();
 }
 
 void add_measuring_options(CLI::App& command, BenchOptions& options) {
@@ -400,6 +441,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<BenchOptions>();
   add_scene_options(*command, *options);
   add_measuring_options(*command, *options);
+  add_light_options(*command, options->lights);
   command->footer("Exits with 1 when answers differ between rounds, instruction sets or threads.");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "kiwami/commands.h"
+#include "kiwami/direct_light.h"
 #include "kiwami/image.h"
 #include "kiwami/options.h"
 #include "kiwami/progress.h"
@@ -25,6 +26,8 @@ struct RenderOptions {
   uint32_t samples_per_pixel = 16;
   uint32_t bounces = 4;
   bool instanced = false;
+  std::string lights;  ///< how they are chosen; empty: no lights
+  double light_share = 0.1;
   ViewOptions view;
   TraceOptions trace;
   PipelineOptions pipeline;
@@ -42,6 +45,12 @@ RenderMode parse_mode(const std::string& name) {
 void check_options(const RenderOptions& options) {
   parse_mode(options.mode);
   parse_size("--size", options.size);
+  if (!options.lights.empty() && !find_light_method(options.lights)) {
+    throw UsageError("--lights is '" + options.lights + "', expected " + light_method_list());
+  }
+  if (!options.lights.empty() && options.instanced) {
+    throw UsageError("--lights goes without --instanced");
+  }
   check_view_options(options.view);
   check_image_path("--output", options.output);
 }
@@ -75,6 +84,20 @@ std::unique_ptr<BuiltScene> make_scene(const RenderOptions& options, const Devic
   return std::make_unique<BuiltScene>(device, file, build);
 }
 
+/// The lights that are asked for, or null.
+std::unique_ptr<DirectLight> make_light(const RenderOptions& options, const Device& device,
+                                        const SceneFile& file) {
+  if (options.lights.empty()) return nullptr;
+  auto light =
+      std::make_unique<DirectLight>(device, file, options.light_share,
+                                    *find_light_method(options.lights), options.trace.bvh_width);
+  const kiwami_light_tree_info& info = light->set().info();
+  std::printf("lights  %s emissive triangles, tree of %.1f ms, %u wide, %.1f bytes per light\n",
+              grouped(info.light_count).c_str(), info.build_seconds * 1e3, info.width,
+              static_cast<double>(info.bytes) / std::max(info.light_count, 1u));
+  return light;
+}
+
 void run_render(const RenderOptions& options) {
   check_options(options);
   const Size size = parse_size("--size", options.size);
@@ -96,6 +119,12 @@ void run_render(const RenderOptions& options) {
   settings.up = view.up;
   settings.threads = device.info().thread_count;
   Tracing tracing(scene);
+  const std::unique_ptr<DirectLight> light = make_light(options, device, file);
+  if (light) {
+    light->expose(tracing, Camera(view, 64, 64 * size.height / size.width + 1));
+    settings.mode = RenderMode::kDirectLight;
+    settings.direct_light = light.get();
+  }
   const auto start = std::chrono::steady_clock::now();
   Image image;
   {
@@ -141,6 +170,15 @@ void add_render_command(CLI::App& app, int& exit_code) {
                    "Put a leaf in place of each triangle, by opacity micromaps of this level, 1 to "
                    "6; 0: none")
       ->check(whole_number(0, 6))
+      ->capture_default_str();
+  command->add_option(
+      "--lights", options->lights,
+      "Light from a part of the scene's triangles, which shine, in place of --mode, "
+      "one bounce, chosen by " +
+          light_method_list());
+  command
+      ->add_option("--light-share", options->light_share, "The part of the triangles that shines")
+      ->check(finite_number(0.0, 1.0))
       ->capture_default_str();
   add_view_options(*command, options->view);
   add_trace_options(*command, options->trace);

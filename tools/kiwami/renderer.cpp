@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "kiwami/direct_light.h"
 #include "kiwami/parallel_ranges.h"
 #include "kiwami/path_tracer.h"
 #include "measure/ray_sets.h"
@@ -84,6 +85,8 @@ void shade(Tracing& tracing, const RenderSettings& settings, SampleBatch& batch)
       return shade_occlusion(tracing, settings, batch);
     case RenderMode::kPath:
       return trace_paths(tracing, settings, batch);
+    case RenderMode::kDirectLight:
+      return settings.direct_light->shade(tracing, batch);
   }
 }
 
@@ -102,10 +105,12 @@ float compress(float linear) { return linear * (1.0f + linear * 0.25f) / (1.0f +
 
 void write_pixels(const std::vector<Vec3>& sums, const RenderSettings& settings, uint8_t* bytes) {
   const float scale = 1.0f / static_cast<float>(settings.samples_per_pixel);
+  const bool is_light =
+      settings.mode == RenderMode::kPath || settings.mode == RenderMode::kDirectLight;
   for (const Vec3& sum : sums) {
     for (int channel = 0; channel < 3; ++channel) {
       const float linear = sum[channel] * scale;
-      *bytes++ = to_byte(settings.mode == RenderMode::kPath ? compress(linear) : linear);
+      *bytes++ = to_byte(is_light ? compress(linear) : linear);
     }
   }
 }

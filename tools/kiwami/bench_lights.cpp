@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiwami/bench_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "kiwami/known_scenes.h"
+#include "kiwami/options.h"
+#include "measure/camera.h"
+#include "measure/emissive_lights.h"
+#include "measure/ray_sets.h"
+#include "scene/random.h"
+
+namespace kiwami::tools {
+namespace {
+
+std::vector<const LightMethodName*> parse_methods(const std::string& text) {
+  std::vector<const LightMethodName*> methods;
+  for (const LightMethodName& method : light_methods()) {
+    if (text.empty()) methods.push_back(&method);
+  }
+  if (text.empty()) return methods;
+  for (const std::string& word : split_words("--light-methods", text)) {
+    const LightMethodName* method = find_light_method(word);
+    if (!method) {
+      throw UsageError("--light-methods has '" + word + "', expected some of " +
+                       light_method_list());
+    }
+    methods.push_back(method);
+  }
+  return methods;
+}
+
+std::vector<uint32_t> parse_widths(const std::string& text) {
+  std::vector<uint32_t> widths;
+  for (const std::string& word : split_words("--light-widths", text)) {
+    if (word != "2" && word != "4" && word != "8" && word != "16") {
+      throw UsageError("--light-widths has '" + word + "', expected some of 2, 4, 8, 16");
+    }
+    widths.push_back(static_cast<uint32_t>(std::stoul(word)));
+  }
+  return widths;
+}
+
+bool has_wide_tree(const LightMethodName& method) {
+  return method.method != KIWAMI_LIGHT_METHOD_POWER &&
+         method.method != KIWAMI_LIGHT_METHOD_LAZY_ROULETTE;
+}
+
+/// One method on one tree, on the same receivers as all others.
+class LightRun {
+ public:
+  LightRun(const LightMethodName& method, const Device& device,
+           const std::vector<EmissiveTriangle>& lights, uint32_t width)
+      : method_(method),
+        device_(device),
+        lights_(lights),
+        set_(device, lights, width, method.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {}
+
+  /// Estimates what each receiver gets, `draws` calls of the method together. What is kept is
+  /// timed: the choices, and the contributions that they ask for.
+  void run(std::vector<kiwami_light_receiver> receivers, uint32_t draws) {
+    estimates_.assign(receivers.size(), 0.0);
+    choice_count_ = 0;
+    std::vector<kiwami_light_choice> choices(receivers.size() * method_.max_choices);
+    Random random(7, 93);
+    for (uint32_t draw = 0; draw < draws; ++draw) {
+      for (kiwami_light_receiver& receiver : receivers) {
+        receiver.random = (static_cast<double>(random.next()) + random.uniform()) * 0x1p-32;
+      }
+      set_.sample(method_, receivers, choices);
+      for (size_t i = 0; i < receivers.size(); ++i)
+        estimates_[i] += estimate(receivers[i], &choices[i * method_.max_choices]) / draws;
+    }
+  }
+
+  const LightMethodName& method() const { return method_; }
+  const Device& device() const { return device_; }
+  const kiwami_light_tree_info& info() const { return set_.info(); }
+  uint64_t choice_count() const { return choice_count_; }
+  const std::vector<double>& estimates() const { return estimates_; }
+
+ private:
+  double estimate(const kiwami_light_receiver& receiver, const kiwami_light_choice* choices) {
+    const Vec3 at{receiver.position[0], receiver.position[1], receiver.position[2]};
+    const Vec3 normal{receiver.normal[0], receiver.normal[1], receiver.normal[2]};
+    double sum = 0.0;
+    for (uint32_t k = 0; k < method_.max_choices; ++k) {
+      if (choices[k].light_id == KIWAMI_INVALID_ID) break;
+      const EmissiveTriangle& light = lights_[choices[k].light_id];
+      sum += static_cast<double>(light.area * light.arriving(light.middle(), at, normal)) /
+             static_cast<double>(choices[k].probability);
+      ++choice_count_;
+    }
+    return sum;
+  }
+
+  const LightMethodName& method_;
+  const Device& device_;
+  const std::vector<EmissiveTriangle>& lights_;
+  LightSet set_;
+  std::vector<double> estimates_;
+  uint64_t choice_count_ = 0;
+};
+
+class LightBench {
+ public:
+  LightBench(const std::string& name, const LightBenchOptions& options,
+             const BenchSettings& settings)
+      : name_(name), options_(options), settings_(settings) {
+    const SceneFile file = flatten(load_known_scene(name));
+    lights_ = choose_emissive(file, options.share);
+    if (lights_.empty()) {
+      throw UsageError("no triangle of '" + name + "' shines, expected a larger --light-share");
+    }
+    const Device device(settings.isas.front(), 0);
+    const BuiltScene scene(device, file, settings.build);
+    place_receivers(scene, file);
+    find_references();
+  }
+
+  void run(const std::function<void(const LightRow&)>& on_row) {
+    std::vector<std::unique_ptr<Device>> devices;
+    std::vector<std::unique_ptr<LightRun>> runs;
+    for (const uint32_t isa : settings_.isas) {
+      devices.push_back(std::make_unique<Device>(isa, 1));
+      for (const LightMethodName* method : parse_methods(options_.methods)) {
+        for (const uint32_t width : widths_of(*method)) {
+          runs.push_back(std::make_unique<LightRun>(*method, *devices.back(), lights_, width));
+        }
+      }
+    }
+    std::vector<Contender> contenders;
+    for (const auto& run : runs) {
+      LightRun* const each = run.get();
+      contenders.push_back(
+          {[] {}, [this, each] { each->run(receivers_, options_.samples); }, [] {}});
+    }
+    const auto seconds = interleaved_seconds(contenders, settings_.rounds, settings_.clock);
+    double power_seconds = 0.0;
+    for (size_t i = 0; i < runs.size(); ++i) {
+      // Of the same instruction set: the one before in the list.
+      if (runs[i]->method().method == KIWAMI_LIGHT_METHOD_POWER) power_seconds = median(seconds[i]);
+      on_row(row_of(*runs[i], median(seconds[i]), power_seconds));
+    }
+  }
+
+ private:
+  std::vector<uint32_t> widths_of(const LightMethodName& method) const {
+    // One that has no wide tree runs once.
+    if (!has_wide_tree(method)) return {4};
+    return parse_widths(options_.widths);
+  }
+
+  void place_receivers(const BuiltScene& scene, const SceneFile& file) {
+    const auto edge =
+        static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(options_.receiver_count))));
+    const View view = choose_view(settings_.view, file, bounds_of(scene.info()), 1.0f);
+    const RaySet rays = primary_rays(Camera(view, edge, edge));
+    std::vector<kiwami_hit> hits(rays.rays.size());
+    scene.closest_hits(rays.rays, hits);
+    for (size_t i = 0; i < hits.size(); ++i) {
+      if (!is_hit(hits[i])) continue;
+      const Surface surface = surface_of(rays.rays[i], hits[i]);
+      receivers_.push_back(receiver_at(surface.point, surface.normal, 0.0));
+    }
+  }
+
+  /// Keeps the receivers that get light at all.
+  void find_references() {
+    size_t kept = 0;
+    for (const kiwami_light_receiver& receiver : receivers_) {
+      const Vec3 at{receiver.position[0], receiver.position[1], receiver.position[2]};
+      const Vec3 normal{receiver.normal[0], receiver.normal[1], receiver.normal[2]};
+      double sum = 0.0;
+      for (const EmissiveTriangle& light : lights_) {
+        sum += static_cast<double>(light.area * light.arriving(light.middle(), at, normal));
+      }
+      if (!(sum > 0.0)) continue;
+      references_.push_back(sum);
+      receivers_[kept++] = receiver;
+    }
+    receivers_.resize(kept);
+  }
+
+  LightRow row_of(const LightRun& run, double seconds, double power_seconds) const {
+    const auto choices = static_cast<double>(run.choice_count());
+    const auto count = static_cast<double>(receivers_.size());
+    double sum = 0.0;
+    for (size_t i = 0; i < receivers_.size(); ++i) {
+      const double relative = run.estimates()[i] / references_[i] - 1.0;
+      sum += relative * relative;
+    }
+    // Errors of means go with the number of choices.
+    const double wanted = static_cast<double>(options_.samples) * count;
+    const double error = sum / count * choices / wanted;
+    const double seconds_wanted = seconds * wanted / choices;
+    const kiwami_light_tree_info& info = run.info();
+    return {name_,
+            lights_.size(),
+            receivers_.size(),
+            run.method().name,
+            kiwami_isa_name(run.device().info().isa),
+            has_wide_tree(run.method()) ? info.width : 0,
+            info.build_seconds * 1e3,
+            static_cast<double>(info.bytes) / static_cast<double>(lights_.size()),
+            choices / seconds * 1e-6,
+            choices / count / options_.samples,
+            error,
+            power_seconds > 0.0 ? error * seconds_wanted / power_seconds : 0.0};
+  }
+
+  std::string name_;
+  const LightBenchOptions& options_;
+  const BenchSettings& settings_;
+  std::vector<EmissiveTriangle> lights_;
+  std::vector<kiwami_light_receiver> receivers_;
+  std::vector<double> references_;  ///< by receiver
+};
+
+}  // namespace
+
+void run_lights(const std::string& scene, const LightBenchOptions& options,
+                const BenchSettings& settings, const std::function<void(const LightRow&)>& on_row) {
+  parse_methods(options.methods);
+  parse_widths(options.widths);
+  LightBench(scene, options, settings).run(on_row);
+}
+
+nlohmann::ordered_json to_json(const LightRow& row) {
+  return {{"scene", row.scene},
+          {"lights", row.lights},
+          {"receivers", row.receivers},
+          {"method", row.method},
+          {"isa", row.isa},
+          {"width", row.width},
+          {"build_ms", row.build_milliseconds},
+          {"bytes_per_light", row.bytes_per_light},
+          {"mega_choices_per_second", row.mega_choices},
+          {"choices_per_receiver", row.choices_per_receiver},
+          {"mse", row.error},
+          {"mse_equal_time", row.error_equal_time}};
+}
+
+void print_row(const LightRow& row, bool is_first) {
+  if (is_first) {
+    std::printf("%s: %s lights, %zu receivers\n", row.scene.c_str(), grouped(row.lights).c_str(),
+                row.receivers);
+    std::printf("%-16s %-7s %5s %9s %8s %10s %8s %11s %11s\n", "method", "isa", "width", "build ms",
+                "B/light", "Mchoices/s", "choices", "error", "equal time");
+  }
+  std::printf("%-16s %-7s %5u %9.1f %8.1f %10.3f %8.2f %11.4g %11.4g\n", row.method.c_str(),
+              row.isa.c_str(), row.width, row.build_milliseconds, row.bytes_per_light,
+              row.mega_choices, row.choices_per_receiver, row.error, row.error_equal_time);
+}
+
+}  // namespace kiwami::tools

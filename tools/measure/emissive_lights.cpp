@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/emissive_lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/random.h"
+
+namespace kiwami::tools {
+namespace {
+
+void check(kiwami_result result) {
+  if (result == KIWAMI_OK) return;
+  std::string sentence(kiwami_last_error(nullptr, nullptr, 0), '\0');
+  kiwami_last_error(nullptr, sentence.data(), sentence.size());
+  sentence.pop_back();
+  throw LibraryError(result, sentence);
+}
+
+Vec3 vertex_of(const Mesh& mesh, uint32_t index) {
+  const float* vertex = &mesh.vertices[size_t{3} * index];
+  return {vertex[0], vertex[1], vertex[2]};
+}
+
+bool is_finite(Vec3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+
+}  // namespace
+
+const std::vector<LightMethodName>& light_methods() {
+  static const std::vector<LightMethodName> methods = {
+      {"power", KIWAMI_LIGHT_METHOD_POWER, 1},
+      {"tree", KIWAMI_LIGHT_METHOD_TREE, 1},
+      {"tree_splitting", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 8},
+      {"lightcuts", KIWAMI_LIGHT_METHOD_LIGHTCUTS, 8},
+      {"lazy_roulette", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 32},
+  };
+  return methods;
+}
+
+std::string light_method_list() {
+  std::string list;
+  for (const LightMethodName& method : light_methods()) {
+    list += (list.empty() ? "" : ", ") + std::string(method.name);
+  }
+  return list;
+}
+
+const LightMethodName* find_light_method(const std::string& name) {
+  for (const LightMethodName& method : light_methods()) {
+    if (name == method.name) return &method;
+  }
+  return nullptr;
+}
+
+float EmissiveTriangle::arriving(Vec3 from, Vec3 at, Vec3 at_normal) const {
+  const Vec3 way = from - at;
+  const float square = dot(way, way);
+  const float cosine = dot(way, at_normal);
+  if (!(square > 0.0f) || !(cosine > 0.0f)) return 0.0f;
+  return radiance * cosine * std::fabs(dot(way, normal)) / (square * square);
+}
+
+std::vector<EmissiveTriangle> choose_emissive(const SceneFile& file, double share) {
+  std::vector<EmissiveTriangle> chosen;
+  for (size_t number = 0; number < file.meshes.size(); ++number) {
+    const Mesh& mesh = file.meshes[number];
+    Random random(number, 91);
+    for (size_t i = 0; i < mesh.triangle_count(); ++i) {
+      const double lot = static_cast<double>(random.next()) * 0x1p-32;
+      const float radiance = std::exp2(3.0f * (2.0f * random.uniform() - 1.0f));
+      if (lot >= share) continue;
+      const Vec3 a = vertex_of(mesh, mesh.indices[3 * i]);
+      const Vec3 u = vertex_of(mesh, mesh.indices[3 * i + 1]) - a;
+      const Vec3 v = vertex_of(mesh, mesh.indices[3 * i + 2]) - a;
+      const Vec3 across = cross(u, v);
+      const float twice_area = length(across);
+      if (!is_finite(a) || !(twice_area > 0.0f) || !std::isfinite(twice_area)) continue;
+      chosen.push_back({a, u, v, across * (1.0f / twice_area), 0.5f * twice_area, radiance,
+                        static_cast<uint32_t>(number), static_cast<uint32_t>(i)});
+    }
+  }
+  return chosen;
+}
+
+LightSet::LightSet(const Device& device, const std::vector<EmissiveTriangle>& triangles,
+                   uint32_t width, bool with_roulette, uint32_t builder) {
+  std::vector<float> vertices;
+  vertices.reserve(triangles.size() * 9);
+  for (const EmissiveTriangle& triangle : triangles) {
+    for (const Vec3 corner :
+         {triangle.corner, triangle.corner + triangle.u, triangle.corner + triangle.v}) {
+      vertices.insert(vertices.end(), {corner.x, corner.y, corner.z});
+    }
+  }
+  kiwami_light_tree_desc desc;
+  check(kiwami_light_tree_desc_init(&desc, sizeof desc));
+  desc.width = width;
+  desc.builder = builder;
+  desc.flags = with_roulette ? KIWAMI_LIGHT_TREE_WITH_ROULETTE : 0;
+  check(kiwami_light_tree_create(device.get(), &desc, &tree_));
+  kiwami_light_mesh_desc mesh;
+  check(kiwami_light_mesh_desc_init(&mesh, sizeof mesh));
+  mesh.flags = KIWAMI_LIGHT_TWO_SIDED;
+  mesh.vertices = vertices.data();
+  mesh.vertex_count = vertices.size() / 3;
+  mesh.triangle_count = triangles.size();
+  if (!triangles.empty()) mesh.radiances = &triangles[0].radiance;
+  mesh.radiance_stride = sizeof(EmissiveTriangle);
+  check(kiwami_light_tree_add_mesh(tree_, &mesh, nullptr));
+  check(kiwami_light_tree_commit(tree_));
+  info_.struct_size = sizeof info_;
+  check(kiwami_light_tree_get_info(tree_, &info_));
+}
+
+void LightSet::sample(const LightMethodName& method,
+                      std::span<const kiwami_light_receiver> receivers,
+                      std::span<kiwami_light_choice> choices) const {
+  kiwami_light_query query;
+  check(kiwami_light_query_init(&query, sizeof query));
+  query.method = method.method;
+  query.max_choices = method.max_choices;
+  check(
+      kiwami_light_sample(tree_, receivers.data(), 0, choices.data(), 0, receivers.size(), &query));
+}
+
+kiwami_light_receiver receiver_at(Vec3 point, Vec3 normal, double random) {
+  kiwami_light_receiver receiver{};
+  receiver.position[0] = point.x;
+  receiver.position[1] = point.y;
+  receiver.position[2] = point.z;
+  receiver.normal[0] = normal.x;
+  receiver.normal[1] = normal.y;
+  receiver.normal[2] = normal.z;
+  receiver.link_mask = ~uint64_t{0};
+  receiver.random = random;
+  return receiver;
+}
+
+}  // namespace kiwami::tools

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "measure/library.h"
+#include "scene/vector.h"
+
+namespace kiwami::tools {
+
+/// A way to choose lights, by its name on the command line.
+struct LightMethodName {
+  const char* name;
+  uint32_t method;       ///< KIWAMI_LIGHT_METHOD_*
+  uint32_t max_choices;  ///< of a receiver at once
+};
+const std::vector<LightMethodName>& light_methods();
+/// "power, tree, ...".
+std::string light_method_list();
+/// Null for an unknown name.
+const LightMethodName* find_light_method(const std::string& name);
+
+/// A triangle that shines, to both sides.
+struct EmissiveTriangle {
+  Vec3 corner, u, v;
+  Vec3 normal;  ///< of unit length
+  float area;
+  float radiance;
+  uint32_t mesh, number;  ///< where it is in the scene
+
+  Vec3 middle() const { return corner + (u + v) * (1.0f / 3.0f); }
+  /// What arrives from one of its points at a point with a normal, by area: radiance times the
+  /// cosines over the squared distance, nothing from below the tangent plane.
+  float arriving(Vec3 from, Vec3 at, Vec3 at_normal) const;
+};
+
+/// A part of a scene's triangles that shine: each for itself with the probability `share`, with a
+/// radiance that differs by up to 64, decided by hashes of mesh and triangle.
+std::vector<EmissiveTriangle> choose_emissive(const SceneFile& file, double share);
+
+/// Owns a set of these lights, light i being triangle i, committed.
+class LightSet {
+ public:
+  LightSet(const Device& device, const std::vector<EmissiveTriangle>& triangles, uint32_t width,
+           bool with_roulette, uint32_t builder = KIWAMI_LIGHT_BUILDER_SAOH);
+  ~LightSet() { kiwami_light_tree_release(tree_); }
+  LightSet(const LightSet&) = delete;
+  LightSet& operator=(const LightSet&) = delete;
+
+  const kiwami_light_tree_info& info() const { return info_; }
+  /// As many choices for each receiver as the method has at most.
+  void sample(const LightMethodName& method, std::span<const kiwami_light_receiver> receivers,
+              std::span<kiwami_light_choice> choices) const;
+
+ private:
+  kiwami_light_tree* tree_ = nullptr;
+  kiwami_light_tree_info info_{};
+};
+
+/// A receiver of light at a point with a normal.
+kiwami_light_receiver receiver_at(Vec3 point, Vec3 normal, double random);
+
+}  // namespace kiwami::tools
