@@ -104,8 +104,8 @@ enum {
 };
 
 enum {
-  /* Build what KIWAMI_LIGHT_METHOD_LAZY_ROULETTE needs, too: 100 to 200 bytes more for each light.
-   */
+  /* Build what the methods CULLING, ROULETTE and LAZY_ROULETTE need, too: 100 to 200 bytes more for
+   * each light. */
   KIWAMI_LIGHT_TREE_WITH_ROULETTE = 1u << 0
 };
 
@@ -191,8 +191,41 @@ enum {
    * accepted, that many of them are kept, with probabilities that are less in proportion (so the
    * estimate stays unbiased), while kiwami_light_pdf gives that of being accepted. Of an instance
    * that is accepted, one light is chosen by power. */
-  KIWAMI_LIGHT_METHOD_LAZY_ROULETTE = 4
+  KIWAMI_LIGHT_METHOD_LAZY_ROULETTE = 4,
+  /* Stochastic light culling: each light is accepted where the receiver is within its range, which
+   * depends on the light's energy and on a random number of its own, not on the receiver. Receivers
+   * that are given the same random number see the same ranges. Which lights there is room for, and
+   * instances, are as with LAZY_ROULETTE. */
+  KIWAMI_LIGHT_METHOD_CULLING = 5,
+  /* Hierarchical Russian roulette as it was published: as LAZY_ROULETTE, but each light's number is
+   * independent of all others. */
+  KIWAMI_LIGHT_METHOD_ROULETTE = 6
 };
+
+/* With which probability ROULETTE and LAZY_ROULETTE accept a light: in proportion to its energy
+ * over its squared distance times, of directions from the receiver to the light, the greatest of:
+ */
+enum {
+  /* The cosine at the receiver (Dachsbacher's lobe). */
+  KIWAMI_LIGHT_LOBE_COSINE = 0,
+  /* The square of that cosine: lights within a sphere that touches the tangent plane. */
+  KIWAMI_LIGHT_LOBE_TANGENT_SPHERE = 1,
+  /* A squared ellipsoidal lobe around the receiver's mirror direction, for what is glossy. */
+  KIWAMI_LIGHT_LOBE_GLOSSY = 2
+};
+
+/* How LAZY_ROULETTE gives the lights their numbers. */
+enum {
+  KIWAMI_LIGHT_ORDER_XOR = 0,      /* the light's place in the tree, xor one random number */
+  KIWAMI_LIGHT_ORDER_SCRAMBLED = 1 /* the halves of every subtree are exchanged at random (Owen) */
+};
+
+/* The lobe of a glossy receiver. 16 bytes, at any address. */
+typedef struct kiwami_light_lobe {
+  float axis[3];   /* away from the receiver, of any length, where the lobe has its peak: the mirror
+                    * direction. Not finite or of length 0: the receiver has the lobe COSINE. */
+  float roughness; /* GGX's alpha; less than 0.001 counts as that, more than 1 as 1 */
+} kiwami_light_lobe;
 
 enum {
   /* Sample on the calling thread alone, however many receivers there are. */
@@ -205,11 +238,18 @@ typedef struct kiwami_light_query {
   uint32_t flags;       /* KIWAMI_LIGHT_QUERY_* */
   uint32_t method;      /* KIWAMI_LIGHT_METHOD_* */
   uint32_t max_choices; /* the choices that a receiver gets at most, and has room for; 1 (the
-                         * default), or with TREE_SPLITTING, LIGHTCUTS and LAZY_ROULETTE up to
+                         * default), or with all methods but TREE and POWER up to
                          * KIWAMI_LIGHT_MAX_CHOICES */
   float threshold;      /* of TREE_SPLITTING, 0 to 1: 0 splits nothing, 1 splits all that there is
                          * room for; 0.5 */
-  uint32_t reserved;    /* 0 */
+  uint32_t lobe;        /* of ROULETTE and LAZY_ROULETTE: KIWAMI_LIGHT_LOBE_* */
+  uint32_t order;       /* of LAZY_ROULETTE: KIWAMI_LIGHT_ORDER_* */
+  float reach; /* of CULLING, 0 or more: at this distance of a receiver from all lights half
+                * of max_choices are accepted. 0: the radius of all lights' box over the
+                * root of 3 */
+  const kiwami_light_lobe* lobes; /* of the lobe GLOSSY, one a receiver; read during the call only;
+                                   * NULL only with other lobes */
+  uint64_t lobe_stride;           /* bytes from one to the next, at least 16; 0: 16 */
 } kiwami_light_query;
 
 /* Fill a struct with its defaults: see the fields; a transform that changes nothing, no
@@ -327,7 +367,8 @@ KIWAMI_API kiwami_result kiwami_light_tree_get_info(const kiwami_light_tree* tre
  *   query      NULL for the defaults
  * Large batches run on the device's threads. Nothing is allocated.
  *   errors     INVALID_ARGUMENT: tree is NULL, a field of query; INVALID_STATE: never committed, or
- *              LAZY_ROULETTE of a set without KIWAMI_LIGHT_TREE_WITH_ROULETTE;
+ *              CULLING, ROULETTE or LAZY_ROULETTE of a set without
+ *              KIWAMI_LIGHT_TREE_WITH_ROULETTE;
  *              CALLBACK: the runner failed. With KIWAMI_DEVICE_VALIDATE also INVALID_ARGUMENT:
  *              NULL, a stride too small, an extent that overflows
  * [any thread after commit]; since 0.1 */

@@ -175,9 +175,8 @@ LightInstance read_instance(const LightTree& tree, const kiwami_light_instance_d
 }
 
 void check_choices(const kiwami_light_query& query) {
-  const bool has_many = query.method == KIWAMI_LIGHT_METHOD_TREE_SPLITTING ||
-                        query.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS ||
-                        query.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE;
+  const bool has_many =
+      query.method != KIWAMI_LIGHT_METHOD_TREE && query.method != KIWAMI_LIGHT_METHOD_POWER;
   const uint32_t most = has_many ? KIWAMI_LIGHT_MAX_CHOICES : 1;
   if (query.max_choices < 1 || query.max_choices > most) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
@@ -191,10 +190,27 @@ void check_choices(const kiwami_light_query& query) {
 }
 
 void check_roulette(const kiwami_light_query& query, const CommittedLights& lights) {
-  if (query.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE && !lights.has_roulette()) {
+  if (is_roulette(query.method) && !lights.has_roulette()) {
     throw Error(KIWAMI_ERROR_INVALID_STATE,
-                "query.method is KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, but the set was made without "
-                "KIWAMI_LIGHT_TREE_WITH_ROULETTE, expected it in the flags of its description");
+                "query.method is %u, a roulette, but the set was made without "
+                "KIWAMI_LIGHT_TREE_WITH_ROULETTE, expected it in the flags of its description",
+                query.method);
+  }
+}
+
+void check_lobes(const kiwami_light_query& query) {
+  if (query.lobe > KIWAMI_LIGHT_LOBE_GLOSSY) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "query.lobe is %u, expected one of KIWAMI_LIGHT_LOBE_*", query.lobe);
+  }
+  if (query.order > KIWAMI_LIGHT_ORDER_SCRAMBLED) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "query.order is %u, expected one of KIWAMI_LIGHT_ORDER_*", query.order);
+  }
+  check_amount("query.reach", query.reach);
+  if (query.lobe == KIWAMI_LIGHT_LOBE_GLOSSY) {
+    check_array("query.lobes", query.lobes, static_cast<size_t>(query.lobe_stride),
+                sizeof(kiwami_light_lobe), 1);
   }
 }
 
@@ -206,12 +222,12 @@ kiwami_light_query read_query(const kiwami_light_query* given) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "query.flags is 0x%x, expected KIWAMI_LIGHT_QUERY_* bits", query.flags);
   }
-  if (query.method > KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {
+  if (query.method > KIWAMI_LIGHT_METHOD_ROULETTE) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "query.method is %u, expected one of KIWAMI_LIGHT_METHOD_*", query.method);
   }
   check_choices(query);
-  check_reserved("query.reserved", query.reserved);
+  check_lobes(query);
   return query;
 }
 
@@ -220,7 +236,10 @@ LightMethod method_of(const kiwami_light_query& query) {
   const bool has_tree = query.method != KIWAMI_LIGHT_METHOD_POWER;
   const uint32_t method =
       has_tree && query.max_choices == 1 ? uint32_t{KIWAMI_LIGHT_METHOD_TREE} : query.method;
-  return {method, query.flags != 0};
+  LightMethod result{method, query.flags != 0, {}};
+  result.rules = {method, query.lobe, query.order, static_cast<double>(query.reach),
+                  query.max_choices};
+  return result;
 }
 
 /// (1 / (1 + deviation))^(1/4) below the threshold, as a limit of the deviation.
@@ -231,6 +250,15 @@ double split_limit_of(float threshold) {
 }
 
 size_t stride_or(size_t stride, size_t size) { return stride ? stride : size; }
+
+const unsigned char* lobes_of(const kiwami_light_query& query) {
+  return query.lobe == KIWAMI_LIGHT_LOBE_GLOSSY
+             ? reinterpret_cast<const unsigned char*>(query.lobes)
+             : nullptr;
+}
+size_t lobe_stride_of(const kiwami_light_query& query) {
+  return stride_or(static_cast<size_t>(query.lobe_stride), sizeof(kiwami_light_lobe));
+}
 
 }  // namespace
 
@@ -370,7 +398,9 @@ kiwami_result kiwami_light_sample(const kiwami_light_tree* tree,
                            count,
                            checked.max_choices,
                            split_limit_of(checked.threshold),
-                           checked.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS};
+                           checked.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS,
+                           lobes_of(checked),
+                           lobe_stride_of(checked)};
     sample_lights(object, method_of(checked), batch);
   });
 }
@@ -400,7 +430,9 @@ kiwami_result kiwami_light_pdf(const kiwami_light_tree* tree,
                            count,
                            checked.max_choices,
                            split_limit_of(checked.threshold),
-                           checked.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS};
+                           checked.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS,
+                           lobes_of(checked),
+                           lobe_stride_of(checked)};
     find_light_probabilities(object, method_of(checked), batch);
   });
 }

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "kernels/light_kernels.h"
+#include "kernels/light_kernel_set.h"
 #include "kiwami/trace.h"
 #include "wide/wide_bvh.h"
 

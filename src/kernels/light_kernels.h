@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/light_kernel_set.h"
 #include "kiwami/light.h"
 #include "lights/light_node.h"
 
@@ -28,16 +29,10 @@ struct LightBatch {
   double split_limit;
   /// Whether children are compared, and cuts are made, as by stochastic lightcuts.
   bool is_lightcut;
-};
 
-using LightKernel = void (*)(const LightTreeView& tree, const LightBatch& batch);
-
-/// The kernels of one tree width; all null where the ISA has none.
-struct LightKernels {
-  LightKernel sample;        ///< one choice a receiver
-  LightKernel pdf;           ///< the probability with which sample makes it
-  LightKernel sample_split;  ///< adaptive splitting: up to max_choices a receiver
-  LightKernel pdf_split;     ///< the probability with which a light is among them
+  // Of the roulettes, which are no kernels.
+  const unsigned char* lobes = nullptr;  ///< kiwami_light_lobe, or null
+  size_t lobe_stride = 0;
 };
 
 }  // namespace kiwami

@@ -59,14 +59,15 @@ class CommittedLights : public Object<CommittedLights> {
   kiwami_light_choice choose_by_power(double random) const;
   double probability_by_power(const kiwami_light_name& name) const;
 
-  /// Whether it was built with what the roulette needs.
+  /// Whether it was built with what the roulettes need.
   bool has_roulette() const { return has_roulette_; }
-  /// The lights that the roulette accepts, at most max_count, and a distant one; returns how many.
-  uint32_t play_roulette(const kiwami_light_receiver& receiver, kiwami_light_choice* choices,
-                         uint32_t max_count) const;
+  /// The lights that the roulette accepts, and a distant one, at most rules.max_count; returns how
+  /// many. lobe may be null.
+  uint32_t play_roulette(const kiwami_light_receiver& receiver, const kiwami_light_lobe* lobe,
+                         const RouletteRules& rules, kiwami_light_choice* choices) const;
   /// The probability with which the roulette accepts a light.
-  float roulette_probability(const kiwami_light_receiver& receiver, const kiwami_light_name& name,
-                             uint32_t max_count) const;
+  float roulette_probability(const kiwami_light_receiver& receiver, const kiwami_light_lobe* lobe,
+                             const RouletteRules& rules, const kiwami_light_name& name) const;
 
  private:
   void build(const LightInput& input, const LightLeaves& leaves, const CommittedLights* shape);
@@ -75,6 +76,8 @@ class CommittedLights : public Object<CommittedLights> {
   void describe(const LightInput& input);
   void weigh(const LightInput& input, const LightLeaves& leaves);
   double distant_share() const;
+  kiwami_light_choice choice_of_leaf(const AcceptedLeaf& leaf, double random) const;
+  double roulette_strength(const RouletteReceiver& receiver, const RouletteRules& rules) const;
 
   Reference<Device> device_;
   LightLinks links_;

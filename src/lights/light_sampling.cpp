@@ -26,6 +26,7 @@ void for_blocks(const LightTree& tree, const LightMethod& method, const LightBat
   parallel.for_blocks(batch.count, kBlockSize, [&](size_t begin, size_t end) {
     LightBatch block = batch;
     block.receivers += begin * batch.receiver_stride;
+    if (batch.lobes) block.lobes += begin * batch.lobe_stride;
     if (batch.names) block.names += begin * batch.name_stride;
     block.answers += begin * answer_count * batch.answer_stride;
     block.count = end - begin;
@@ -42,12 +43,22 @@ void sample_by_power(const CommittedLights& lights, const LightBatch& batch) {
   }
 }
 
-void play_roulette(const CommittedLights& lights, const LightBatch& batch) {
+/// The receiver's lobe, or null.
+const kiwami_light_lobe* read_lobe(const LightBatch& batch, size_t i, kiwami_light_lobe& lobe) {
+  if (!batch.lobes) return nullptr;
+  std::memcpy(&lobe, batch.lobes + i * batch.lobe_stride, sizeof lobe);
+  return &lobe;
+}
+
+void play_roulette(const CommittedLights& lights, const RouletteRules& rules,
+                   const LightBatch& batch) {
   for (size_t i = 0; i < batch.count; ++i) {
     kiwami_light_receiver receiver;
     std::memcpy(&receiver, batch.receivers + i * batch.receiver_stride, sizeof receiver);
     kiwami_light_choice choices[kMaxLightChoices];
-    const uint32_t count = lights.play_roulette(receiver, choices, batch.max_choices);
+    kiwami_light_lobe lobe;
+    const uint32_t count =
+        lights.play_roulette(receiver, read_lobe(batch, i, lobe), rules, choices);
     for (uint32_t k = 0; k < batch.max_choices; ++k) {
       if (k >= count) choices[k] = {KIWAMI_INVALID_ID, KIWAMI_INVALID_ID, 0, 0.0f, 0.0};
       std::memcpy(batch.answers + (i * batch.max_choices + k) * batch.answer_stride, &choices[k],
@@ -56,13 +67,16 @@ void play_roulette(const CommittedLights& lights, const LightBatch& batch) {
   }
 }
 
-void find_roulette_probabilities(const CommittedLights& lights, const LightBatch& batch) {
+void find_roulette_probabilities(const CommittedLights& lights, const RouletteRules& rules,
+                                 const LightBatch& batch) {
   for (size_t i = 0; i < batch.count; ++i) {
     kiwami_light_receiver receiver;
     kiwami_light_name name;
     std::memcpy(&receiver, batch.receivers + i * batch.receiver_stride, sizeof receiver);
     std::memcpy(&name, batch.names + i * batch.name_stride, sizeof name);
-    const float probability = lights.roulette_probability(receiver, name, batch.max_choices);
+    kiwami_light_lobe lobe;
+    const float probability =
+        lights.roulette_probability(receiver, read_lobe(batch, i, lobe), rules, name);
     std::memcpy(batch.answers + i * batch.answer_stride, &probability, sizeof probability);
   }
 }
@@ -86,8 +100,10 @@ void sample_lights(const LightTree& tree, const LightMethod& method, const Light
     switch (method.method) {
       case KIWAMI_LIGHT_METHOD_POWER:
         return sample_by_power(lights, block);
+      case KIWAMI_LIGHT_METHOD_CULLING:
+      case KIWAMI_LIGHT_METHOD_ROULETTE:
       case KIWAMI_LIGHT_METHOD_LAZY_ROULETTE:
-        return play_roulette(lights, block);
+        return play_roulette(lights, method.rules, block);
       case KIWAMI_LIGHT_METHOD_TREE_SPLITTING:
       case KIWAMI_LIGHT_METHOD_LIGHTCUTS:
         return tree.kernels().sample_split(lights.view(), block);
@@ -104,8 +120,10 @@ void find_light_probabilities(const LightTree& tree, const LightMethod& method,
     switch (method.method) {
       case KIWAMI_LIGHT_METHOD_POWER:
         return find_powers(lights, block);
+      case KIWAMI_LIGHT_METHOD_CULLING:
+      case KIWAMI_LIGHT_METHOD_ROULETTE:
       case KIWAMI_LIGHT_METHOD_LAZY_ROULETTE:
-        return find_roulette_probabilities(lights, block);
+        return find_roulette_probabilities(lights, method.rules, block);
       case KIWAMI_LIGHT_METHOD_TREE_SPLITTING:
       case KIWAMI_LIGHT_METHOD_LIGHTCUTS:
         return tree.kernels().pdf_split(lights.view(), block);

@@ -26,34 +26,57 @@ struct BoxView {
   double nearest_square = 0.0;  ///< of the box
   double middle_square = 0.0;   ///< of its middle
   double radius_square = 0.0;
-  double top = 0.0;  ///< the greatest height over the receiver's plane
+  double offset[3], extent[3];
 
   BoxView(const RouletteReceiver& receiver, const float (&centre)[3], const float (&half)[3]) {
-    double height = 0.0, rise = 0.0, size = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double offset =
+      offset[axis] =
           static_cast<double>(centre[axis]) - static_cast<double>(receiver.position[axis]);
-      const double extent = static_cast<double>(half[axis]);
-      const double gap = std::max(std::fabs(offset) - extent, 0.0);
-      const double normal = static_cast<double>(receiver.normal[axis]);
+      extent[axis] = static_cast<double>(half[axis]);
+      const double gap = std::max(std::fabs(offset[axis]) - extent[axis], 0.0);
       nearest_square += gap * gap;
-      middle_square += offset * offset;
-      radius_square += extent * extent;
-      height += normal * offset;
-      rise += std::fabs(normal) * extent;
-      size += std::fabs(normal) * std::fabs(offset);
+      middle_square += offset[axis] * offset[axis];
+      radius_square += extent[axis] * extent[axis];
     }
-    if (receiver.takes_both_sides) height = std::fabs(height);
-    top = height + rise + kSumSlack * (size + rise);
   }
 
-  /// A bound of the cosine at the receiver over the box.
-  double cosine(const RouletteReceiver& receiver, double least_square) const {
-    if (!receiver.counts_cosine) return 1.0;
+  /// A bound of the cosine between a direction and those to the box; 0 where it is negative.
+  double cosine(const float (&direction)[3], bool is_two_sided, double least_square) const {
+    double height = 0.0, rise = 0.0, size = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double along = static_cast<double>(direction[axis]);
+      height += along * offset[axis];
+      rise += std::fabs(along) * extent[axis];
+      size += std::fabs(along) * std::fabs(offset[axis]);
+    }
+    if (is_two_sided) height = std::fabs(height);
+    const double top = height + rise + kSumSlack * (size + rise);
     if (!(top > 0.0)) return 0.0;
     return std::min(1.0, top / std::sqrt(std::max(nearest_square, least_square)));
   }
 };
+
+/// A bound of the receiver's lobe over a box, relative to its peak: 0 below the tangent plane.
+double lobe_of(const RouletteReceiver& receiver, const BoxView& view, double least_square) {
+  double cosine = 1.0;
+  if (receiver.has_normal) {
+    cosine = view.cosine(receiver.normal, receiver.takes_both_sides, least_square);
+    if (!(cosine > 0.0)) return 0.0;
+  }
+  switch (receiver.lobe) {
+    case RouletteLobe::kSphere:
+      return 1.0;
+    case RouletteLobe::kCosine:
+      return cosine;
+    case RouletteLobe::kTangentSphere:
+      return cosine * cosine;
+    case RouletteLobe::kEllipsoid:
+      break;
+  }
+  const double e = receiver.eccentricity;
+  const double radius = (1.0 - e) / (1.0 - e * view.cosine(receiver.axis, false, least_square));
+  return radius * radius;
+}
 
 }  // namespace
 
@@ -131,13 +154,13 @@ PerfectLightTree::PerfectLightTree(const LightLinks& links, const Array<LightClu
 double PerfectLightTree::leaf_bound(const RouletteReceiver& receiver, const Node& node) const {
   const BoxView view(receiver, node.centre, node.half_extent);
   const double square = std::max({view.middle_square, view.radius_square, least_square_});
-  return static_cast<double>(node.peak) * view.cosine(receiver, least_square_) / square;
+  return static_cast<double>(node.peak) * lobe_of(receiver, view, least_square_) / square;
 }
 
 double PerfectLightTree::bound(const RouletteReceiver& receiver, const Node& node) const {
   const BoxView view(receiver, node.centre, node.half_extent);
   const double square = std::max(view.nearest_square, least_square_);
-  return kBoundSlack * static_cast<double>(node.peak) * view.cosine(receiver, least_square_) /
+  return kBoundSlack * static_cast<double>(node.peak) * lobe_of(receiver, view, least_square_) /
          square;
 }
 
@@ -150,9 +173,22 @@ double PerfectLightTree::strength_for(const RouletteReceiver& receiver, double c
     if (!(node.peak > 0.0f) || (node.link_mask & receiver.link_mask) == 0) continue;
     const BoxView view(receiver, node.centre, node.half_extent);
     const double square = std::max({view.middle_square, view.radius_square, least_square_});
-    sum += static_cast<double>(node.energy) * view.cosine(receiver, least_square_) / square;
+    sum += static_cast<double>(node.energy) * lobe_of(receiver, view, least_square_) / square;
   }
   return sum > 0.0 ? count / sum : 0.0;
+}
+
+double PerfectLightTree::strength_of_reach(double reach, double count) const {
+  if (empty()) return 0.0;
+  const Node& root = nodes_[0];
+  double square = reach * reach;
+  if (!(reach > 0.0)) {
+    for (const float half : root.half_extent) {
+      square += static_cast<double>(half) * static_cast<double>(half) / 3.0;
+    }
+    square = std::max(square, least_square_);
+  }
+  return count * square / static_cast<double>(root.energy);
 }
 
 float PerfectLightTree::probability(const RouletteReceiver& receiver, double strength,

@@ -2,15 +2,36 @@
 #pragma once
 
 #include "lights/light_clusters.h"
+#include "lights/roulette_numbers.h"
 
 namespace kiwami {
+
+/// Which roulette is played: what kiwami_light_query says of it, checked.
+struct RouletteRules {
+  uint32_t method;  ///< KIWAMI_LIGHT_METHOD_*
+  uint32_t lobe;    ///< KIWAMI_LIGHT_LOBE_*
+  uint32_t order;   ///< KIWAMI_LIGHT_ORDER_*
+  double reach;     ///< 0: by the lights' extent
+  uint32_t max_count;
+};
+
+/// By what, besides energy and squared distance, a light is accepted.
+enum class RouletteLobe {
+  kSphere,  ///< nothing, of what is not below the tangent plane
+  kCosine,
+  kTangentSphere,
+  kEllipsoid
+};
 
 /// A receiver of the roulette, without its random number.
 struct RouletteReceiver {
   float position[3];
   float normal[3];  ///< of length 1, or 0, 0, 0
   bool takes_both_sides;
-  bool counts_cosine;  ///< whether lobes or spheres around the receiver bound the lights
+  bool has_normal;
+  RouletteLobe lobe;
+  float axis[3];        ///< of the ellipsoid, of length 1
+  double eccentricity;  ///< of the ellipsoid, 0 to below 1
   uint64_t link_mask;
 };
 
@@ -21,17 +42,15 @@ struct AcceptedLeaf {
 };
 
 /// Hierarchical Russian roulette over a perfect binary tree: each light is accepted with a
-/// probability of its own, p = min(1, strength * energy * cosine / squared distance), by comparing
+/// probability of its own, p = min(1, strength * energy * lobe / squared distance), by comparing
 /// p with a number of its own; subtrees whose lights cannot be accepted are not visited.
 ///
 /// After Y. Tokuyoshi and T. Harada, "Hierarchical Russian Roulette for Vertex Connections", TOG
 /// 38(4), 2019, and, with spheres in place of lobes, "Stochastic Light Culling", JCGT 5(1), 2016;
-/// the lobe is that of C. Dachsbacher and M. Stamminger, "Splatting Indirect Illumination", I3D
-/// 2006. The numbers are those of S. Ogaki's talk "Acceleration Data Structures for Ray Tracing",
-/// CEDEC 2019 (the lazy variant): one number R of as many bits as the tree has levels and one
-/// uniform number xi give leaf i
-/// ((i xor R) + xi) / 2^levels. Each is uniform, together they fill the unit interval evenly, and
-/// the least of a subtree is known without looking at its leaves.
+/// the lobe of the cosine is that of C. Dachsbacher and M. Stamminger, "Splatting Indirect
+/// Illumination", I3D 2006; its square is a sphere that touches the tangent plane; the glossy one
+/// is the squared polar radius of an ellipsoid with the receiver in a focus, which is what the GGX
+/// distribution is of mirrored directions at normal incidence. The numbers: roulette_numbers.h.
 ///
 /// Departures: lights have extent, so the cosine is bounded over a light's box; subtrees are tested
 /// by a bound of p over their box rather than by the shape of its level set, which is never less
@@ -48,9 +67,15 @@ class PerfectLightTree {
   /// By which energies are multiplied so that about `count` lights are accepted.
   double strength_for(const RouletteReceiver& receiver, double count) const;
 
-  /// Calls accept(AcceptedLeaf) for each leaf that the numbers of random (0 to 1) accept.
-  template <typename Accept>
-  void play(const RouletteReceiver& receiver, double strength, double random,
+  /// The same whatever the receiver is: all lights from as far as reach are about `count`. 0: the
+  /// mean of the inverse square of the distance in a ball of their extent, from its middle.
+  double strength_of_reach(double reach, double count) const;
+
+  uint32_t level_count() const { return level_count_; }
+
+  /// Calls accept(AcceptedLeaf) for each leaf that its number (see roulette_numbers.h) accepts.
+  template <typename Numbers, typename Accept>
+  void play(const RouletteReceiver& receiver, double strength, const Numbers& numbers,
             Accept&& accept) const;
 
   /// The probability with which a leaf is accepted.
@@ -77,35 +102,35 @@ class PerfectLightTree {
   double least_square_ = 0.0;
 };
 
-template <typename Accept>
-void PerfectLightTree::play(const RouletteReceiver& receiver, double strength, double random,
-                            Accept&& accept) const {
+template <typename Numbers, typename Accept>
+void PerfectLightTree::play(const RouletteReceiver& receiver, double strength,
+                            const Numbers& numbers, Accept&& accept) const {
   if (empty()) return;
-  const double count = static_cast<double>(leaves_.size());
-  const auto turn = static_cast<uint32_t>(random * count);
-  const double rest = random * count - static_cast<double>(turn);
   struct Task {
     uint32_t prefix, level;  ///< of the node: the first bits of its leaves' places, and how many
+    typename Numbers::Value value;
   };
   Task stack[64];
   uint32_t size = 0;
-  stack[size++] = {0, 0};
+  stack[size++] = {0, 0, numbers.root()};
   while (size != 0) {
     const Task task = stack[--size];
     const uint32_t below = level_count_ - task.level;
-    const Node& node = nodes_[(size_t{1} << task.level) - 1 + task.prefix];
-    const uint64_t least = uint64_t{task.prefix ^ (turn >> below)} << below;
-    const double number = (static_cast<double>(least) + rest) / count;
+    const size_t number = (size_t{1} << task.level) - 1 + task.prefix;
+    const Node& node = nodes_[number];
     if ((node.link_mask & receiver.link_mask) == 0) continue;
+    const double least = numbers.least(task.value, below);
     if (below == 0) {
       const double probability = strength * leaf_bound(receiver, node);
-      if (number < probability) {
+      if (least < probability) {
         accept(AcceptedLeaf{leaves_[task.prefix],
                             static_cast<float>(probability < 1.0 ? probability : 1.0)});
       }
-    } else if (number < strength * bound(receiver, node)) {
-      stack[size++] = {2 * task.prefix + 1, task.level + 1};
-      stack[size++] = {2 * task.prefix, task.level + 1};
+    } else if (least < strength * bound(receiver, node)) {
+      typename Numbers::Value values[2];
+      numbers.divide(task.value, number, below, values);
+      stack[size++] = {2 * task.prefix + 1, task.level + 1, values[1]};
+      stack[size++] = {2 * task.prefix, task.level + 1, values[0]};
     }
   }
 }

@@ -13,6 +13,7 @@ namespace {
 /// Of the choices that there is room for, how many are aimed at: the number of accepted lights
 /// varies.
 constexpr double kAimedShare = 0.5;
+constexpr double kLeastRoughness = 1e-3;
 constexpr double kGreatestRandom = 1.0 - 0x1p-53;
 
 bool are_coordinates(const float (&a)[3]) {
@@ -20,9 +21,29 @@ bool are_coordinates(const float (&a)[3]) {
          std::fabs(a[2]) <= KIWAMI_MAX_COORDINATE;
 }
 
+/// The ellipsoid of a GGX lobe: its distribution over mirrored directions at normal incidence is,
+/// to a factor, 1 / (1 - e cos)^2 with e = (1 - alpha^2) / (1 + alpha^2).
+void read_lobe(const kiwami_light_lobe& lobe, RouletteReceiver& result) {
+  double square = 0.0;
+  for (const float along : lobe.axis) {
+    square += static_cast<double>(along) * static_cast<double>(along);
+  }
+  if (!(square > 0.0) || !std::isfinite(square)) return;
+  const double scale = 1.0 / std::sqrt(square);
+  for (int axis = 0; axis < 3; ++axis) {
+    result.axis[axis] = static_cast<float>(static_cast<double>(lobe.axis[axis]) * scale);
+  }
+  // Not a number counts as 1.
+  const double given = static_cast<double>(lobe.roughness);
+  const double alpha = given < 1.0 ? std::max(given, kLeastRoughness) : 1.0;
+  result.eccentricity = (1.0 - alpha * alpha) / (1.0 + alpha * alpha);
+  result.lobe = RouletteLobe::kEllipsoid;
+}
+
 /// False for a receiver that gets no light. A segment is as its first point without a normal: every
 /// light has a probability above 0.
-bool read_receiver(const kiwami_light_receiver& receiver, RouletteReceiver& result) {
+bool read_receiver(const kiwami_light_receiver& receiver, const kiwami_light_lobe* lobe,
+                   const RouletteRules& rules, RouletteReceiver& result) {
   if (!are_coordinates(receiver.position)) return false;
   result = {};
   bool has_segment = false;
@@ -39,8 +60,8 @@ bool read_receiver(const kiwami_light_receiver& receiver, RouletteReceiver& resu
     square += normal * normal;
     result.position[axis] = receiver.position[axis];
   }
-  result.counts_cosine = square > 0.0 && !has_segment;
-  if (result.counts_cosine) {
+  result.has_normal = square > 0.0 && !has_segment;
+  if (result.has_normal) {
     const double scale = 1.0 / std::sqrt(square);
     for (int axis = 0; axis < 3; ++axis) {
       const double normal = static_cast<double>(receiver.normal[axis]);
@@ -49,22 +70,18 @@ bool read_receiver(const kiwami_light_receiver& receiver, RouletteReceiver& resu
   }
   result.takes_both_sides = (receiver.flags & KIWAMI_RECEIVER_BOTH_SIDES) != 0;
   result.link_mask = receiver.link_mask;
+  result.lobe = RouletteLobe::kCosine;
+  if (rules.method == KIWAMI_LIGHT_METHOD_CULLING) {
+    result.lobe = RouletteLobe::kSphere;
+  } else if (rules.lobe == KIWAMI_LIGHT_LOBE_TANGENT_SPHERE) {
+    result.lobe = RouletteLobe::kTangentSphere;
+  } else if (rules.lobe == KIWAMI_LIGHT_LOBE_GLOSSY && lobe && !has_segment) {
+    read_lobe(*lobe, result);
+  }
   return true;
 }
 
 double clamped(double random) { return random > 0.0 ? std::min(random, kGreatestRandom) : 0.0; }
-
-/// A random number for light number index: SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, "Fast
-/// Splittable Pseudorandom Number Generators", OOPSLA 2014) over the receiver's bits.
-uint64_t mixed(double random, uint64_t index) {
-  uint64_t bits;
-  std::memcpy(&bits, &random, sizeof bits);
-  bits += (index + 1) * 0x9E3779B97F4A7C15u;
-  bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
-  bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
-  return bits ^ (bits >> 31);
-}
-double number_of(uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
 float above_zero(double probability) {
   return std::max(static_cast<float>(probability), std::numeric_limits<float>::min());
@@ -77,45 +94,48 @@ double aimed_count(uint32_t max_count, bool has_distant) {
 
 }  // namespace
 
+double CommittedLights::roulette_strength(const RouletteReceiver& receiver,
+                                          const RouletteRules& rules) const {
+  const double count = aimed_count(rules.max_count, !distant_powers_.empty());
+  if (rules.method == KIWAMI_LIGHT_METHOD_CULLING) {
+    return perfect_tree_.strength_of_reach(rules.reach, count);
+  }
+  return perfect_tree_.strength_for(receiver, count);
+}
+
 uint32_t CommittedLights::play_roulette(const kiwami_light_receiver& given,
-                                        kiwami_light_choice* choices, uint32_t max_count) const {
+                                        const kiwami_light_lobe* lobe, const RouletteRules& rules,
+                                        kiwami_light_choice* choices) const {
   RouletteReceiver receiver;
-  if (!read_receiver(given, receiver)) return 0;
+  if (!read_receiver(given, lobe, rules, receiver)) return 0;
   const double random = clamped(given.random);
-  const bool has_distant = !distant_powers_.empty();
-  uint32_t count = 0;
-  if (has_distant) {
-    const AliasTable::Draw draw = distant_powers_.draw(number_of(mixed(random, ~uint64_t{0})));
+  uint32_t first = 0;
+  if (!distant_powers_.empty()) {
+    const AliasTable::Draw draw =
+        distant_powers_.draw(number_of_bits(mixed_bits(random, ~uint64_t{0})));
     const uint32_t id = distant_[draw.index].light_id;
-    choices[count++] = {id, KIWAMI_INVALID_ID, user_ids_[id],
+    choices[first++] = {id, KIWAMI_INVALID_ID, user_ids_[id],
                         above_zero(distant_powers_.probability(draw.index)), draw.random};
   }
-  const uint32_t first = count;
-  const uint32_t room = max_count - first;
-  const double strength = perfect_tree_.strength_for(receiver, aimed_count(max_count, has_distant));
+  const uint32_t room = rules.max_count - first;
+  const double strength = roulette_strength(receiver, rules);
   uint64_t accepted = 0;
-  perfect_tree_.play(receiver, strength, random, [&](const AcceptedLeaf& leaf) {
-    const uint64_t bits = mixed(random, leaf.leaf);
+  const auto accept = [&](const AcceptedLeaf& leaf) {
+    const uint64_t bits = mixed_bits(random, leaf.leaf);
     // Where there is no more room, each that was accepted is as likely to stay (reservoir
     // sampling).
     uint64_t place = accepted++;
-    if (place >= room) place = mixed(number_of(bits), leaf.leaf) % accepted;
-    if (place >= room) return;
-    kiwami_light_choice& choice = choices[first + place];
-    if (leaf.leaf < view_.light_count) {
-      choice = {leaf.leaf, KIWAMI_INVALID_ID, user_ids_[leaf.leaf], above_zero(leaf.probability),
-                number_of(bits)};
-      return;
-    }
-    const uint32_t instance = leaf.leaf - view_.light_count;
-    const CommittedLights& inner = *held_[instance];
-    const AliasTable::Draw draw = inner.leaf_powers_.draw(number_of(bits));
-    choice = {draw.index, instance, inner.user_ids_[draw.index],
-              above_zero(static_cast<double>(leaf.probability) *
-                         inner.leaf_powers_.probability(draw.index)),
-              draw.random};
-  });
-  count = first + static_cast<uint32_t>(std::min<uint64_t>(accepted, room));
+    if (place >= room) place = mixed_bits(number_of_bits(bits), leaf.leaf) % accepted;
+    if (place < room) choices[first + place] = choice_of_leaf(leaf, number_of_bits(bits));
+  };
+  const uint32_t levels = perfect_tree_.level_count();
+  if (rules.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {
+    const bool is_scrambled = rules.order == KIWAMI_LIGHT_ORDER_SCRAMBLED;
+    perfect_tree_.play(receiver, strength, LazyNumbers(random, levels, is_scrambled), accept);
+  } else {
+    perfect_tree_.play(receiver, strength, IndependentNumbers(random, levels), accept);
+  }
+  const uint32_t count = first + static_cast<uint32_t>(std::min<uint64_t>(accepted, room));
   if (accepted > room) {
     const double share = static_cast<double>(room) / static_cast<double>(accepted);
     for (uint32_t i = first; i < count; ++i) {
@@ -125,11 +145,25 @@ uint32_t CommittedLights::play_roulette(const kiwami_light_receiver& given,
   return count;
 }
 
+kiwami_light_choice CommittedLights::choice_of_leaf(const AcceptedLeaf& leaf, double random) const {
+  if (leaf.leaf < view_.light_count) {
+    return {leaf.leaf, KIWAMI_INVALID_ID, user_ids_[leaf.leaf],
+            above_zero(static_cast<double>(leaf.probability)), random};
+  }
+  const uint32_t instance = leaf.leaf - view_.light_count;
+  const CommittedLights& inner = *held_[instance];
+  const AliasTable::Draw draw = inner.leaf_powers_.draw(random);
+  const double own = inner.leaf_powers_.probability(draw.index);
+  return {draw.index, instance, inner.user_ids_[draw.index],
+          above_zero(static_cast<double>(leaf.probability) * own), draw.random};
+}
+
 float CommittedLights::roulette_probability(const kiwami_light_receiver& given,
-                                            const kiwami_light_name& name,
-                                            uint32_t max_count) const {
+                                            const kiwami_light_lobe* lobe,
+                                            const RouletteRules& rules,
+                                            const kiwami_light_name& name) const {
   RouletteReceiver receiver;
-  if (!read_receiver(given, receiver)) return 0.0f;
+  if (!read_receiver(given, lobe, rules, receiver)) return 0.0f;
   const bool is_in_instance = name.instance_id != KIWAMI_INVALID_ID;
   if (is_in_instance ? name.instance_id >= held_.size() : name.light_id >= view_.light_count) {
     return 0.0f;
@@ -139,8 +173,7 @@ float CommittedLights::roulette_probability(const kiwami_light_receiver& given,
     const double probability = distant_powers_.empty() ? 0.0 : distant_powers_.probability(i);
     return probability > 0.0 ? above_zero(probability) : 0.0f;
   }
-  const double strength =
-      perfect_tree_.strength_for(receiver, aimed_count(max_count, !distant_powers_.empty()));
+  const double strength = roulette_strength(receiver, rules);
   const uint32_t leaf = is_in_instance ? view_.light_count + name.instance_id : name.light_id;
   const float probability = perfect_tree_.probability(receiver, strength, leaf);
   if (!(probability > 0.0f)) return 0.0f;

@@ -415,6 +415,28 @@ TEST(Light, BadArgumentsAreNamed) {
   EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
             KIWAMI_ERROR_INVALID_ARGUMENT);
   query.threshold = 0.5f;
+  query.method = KIWAMI_LIGHT_METHOD_ROULETTE;
+  query.max_choices = 1;
+  EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
+            KIWAMI_ERROR_INVALID_STATE);
+  query.lobe = 3;
+  EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
+            KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(last_error().find("query.lobe is 3"), std::string::npos) << last_error();
+  query.lobe = KIWAMI_LIGHT_LOBE_GLOSSY;
+  EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
+            KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(last_error().find("query.lobes"), std::string::npos) << last_error();
+  query.lobe = KIWAMI_LIGHT_LOBE_COSINE;
+  query.order = 2;
+  EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
+            KIWAMI_ERROR_INVALID_ARGUMENT);
+  query.order = KIWAMI_LIGHT_ORDER_XOR;
+  query.reach = -1.0f;
+  EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
+            KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(last_error().find("query.reach is -1"), std::string::npos) << last_error();
+  query.reach = 0.0f;
   query.flags = 2;
   EXPECT_EQ(kiwami_light_sample(lights.get(), &receiver, 0, &choice, 0, 1, &query),
             KIWAMI_ERROR_INVALID_ARGUMENT);

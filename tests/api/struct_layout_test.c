@@ -89,13 +89,20 @@ static void check_lights(void) {
   SIZE(kiwami_light_name, 8);
   FIELD(kiwami_light_name, light_id, 0);
   FIELD(kiwami_light_name, instance_id, 4);
-  SIZE(kiwami_light_query, 24);
+  SIZE(kiwami_light_query, 48);
   FIELD(kiwami_light_query, struct_size, 0);
   FIELD(kiwami_light_query, flags, 4);
   FIELD(kiwami_light_query, method, 8);
   FIELD(kiwami_light_query, max_choices, 12);
   FIELD(kiwami_light_query, threshold, 16);
-  FIELD(kiwami_light_query, reserved, 20);
+  FIELD(kiwami_light_query, lobe, 20);
+  FIELD(kiwami_light_query, order, 24);
+  FIELD(kiwami_light_query, reach, 28);
+  FIELD(kiwami_light_query, lobes, 32);
+  FIELD(kiwami_light_query, lobe_stride, 40);
+  SIZE(kiwami_light_lobe, 16);
+  FIELD(kiwami_light_lobe, axis, 0);
+  FIELD(kiwami_light_lobe, roughness, 12);
 }
 
 /* Geometries that are no triangles. */
@@ -638,6 +645,13 @@ static void check_numbers(void) {
   expect("KIWAMI_LIGHT_METHOD_TREE_SPLITTING", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 2);
   expect("KIWAMI_LIGHT_METHOD_LIGHTCUTS", KIWAMI_LIGHT_METHOD_LIGHTCUTS, 3);
   expect("KIWAMI_LIGHT_METHOD_LAZY_ROULETTE", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 4);
+  expect("KIWAMI_LIGHT_METHOD_CULLING", KIWAMI_LIGHT_METHOD_CULLING, 5);
+  expect("KIWAMI_LIGHT_METHOD_ROULETTE", KIWAMI_LIGHT_METHOD_ROULETTE, 6);
+  expect("KIWAMI_LIGHT_LOBE_COSINE", KIWAMI_LIGHT_LOBE_COSINE, 0);
+  expect("KIWAMI_LIGHT_LOBE_TANGENT_SPHERE", KIWAMI_LIGHT_LOBE_TANGENT_SPHERE, 1);
+  expect("KIWAMI_LIGHT_LOBE_GLOSSY", KIWAMI_LIGHT_LOBE_GLOSSY, 2);
+  expect("KIWAMI_LIGHT_ORDER_XOR", KIWAMI_LIGHT_ORDER_XOR, 0);
+  expect("KIWAMI_LIGHT_ORDER_SCRAMBLED", KIWAMI_LIGHT_ORDER_SCRAMBLED, 1);
   expect("KIWAMI_LIGHT_TREE_WITH_ROULETTE", KIWAMI_LIGHT_TREE_WITH_ROULETTE, 1);
   expect("KIWAMI_LIGHT_MAX_CHOICES", KIWAMI_LIGHT_MAX_CHOICES, 64);
   expect("KIWAMI_RECEIVER_BOTH_SIDES", KIWAMI_RECEIVER_BOTH_SIDES, 1);

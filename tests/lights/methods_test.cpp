@@ -2,11 +2,13 @@
 // The methods beside the plain descent: by power alone, and adaptive splitting.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "lights/alias_table.h"
 #include "lights/light_scene.h"
+#include "lights/roulette_numbers.h"
 #include "support/environment.h"
 #include "support/library.h"
 
@@ -18,13 +20,29 @@ struct Method {
   uint32_t method;
   uint32_t max_choices;
   float threshold;
+  uint32_t lobe = KIWAMI_LIGHT_LOBE_COSINE;
+  uint32_t order = KIWAMI_LIGHT_ORDER_XOR;
+  float roughness = 1.0f;
 
-  kiwami_light_query query() const {
+  bool is_roulette() const {
+    return method == KIWAMI_LIGHT_METHOD_CULLING || method == KIWAMI_LIGHT_METHOD_ROULETTE ||
+           method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE;
+  }
+  /// The lobes of glossy receivers: one for all.
+  kiwami_light_lobe glossy_lobe() const { return {{1.0f, 2.0f, -0.5f}, roughness}; }
+  std::vector<kiwami_light_lobe> glossy_lobes(size_t count) const {
+    return std::vector<kiwami_light_lobe>(count, glossy_lobe());
+  }
+
+  kiwami_light_query query(const std::vector<kiwami_light_lobe>& lobes) const {
     kiwami_light_query query;
     check(kiwami_light_query_init(&query, sizeof query));
     query.method = method;
     query.max_choices = max_choices;
     query.threshold = threshold;
+    query.lobe = lobe;
+    query.order = order;
+    query.lobes = lobes.data();
     return query;
   }
 };
@@ -42,12 +60,25 @@ const Method kMethods[] = {
     {"lightcuts_10", KIWAMI_LIGHT_METHOD_LIGHTCUTS, 10, 0.5f},
     {"lazy_roulette_64", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 64, 0.5f},
     {"lazy_roulette_4", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 4, 0.5f},
+    {"lazy_scrambled_64", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 64, 0.5f, KIWAMI_LIGHT_LOBE_COSINE,
+     KIWAMI_LIGHT_ORDER_SCRAMBLED},
+    {"culling_64", KIWAMI_LIGHT_METHOD_CULLING, 64, 0.5f},
+    {"culling_4", KIWAMI_LIGHT_METHOD_CULLING, 4, 0.5f},
+    {"roulette_64", KIWAMI_LIGHT_METHOD_ROULETTE, 64, 0.5f},
+    {"roulette_4", KIWAMI_LIGHT_METHOD_ROULETTE, 4, 0.5f},
+    {"roulette_sphere_64", KIWAMI_LIGHT_METHOD_ROULETTE, 64, 0.5f,
+     KIWAMI_LIGHT_LOBE_TANGENT_SPHERE},
+    {"roulette_glossy_64", KIWAMI_LIGHT_METHOD_ROULETTE, 64, 0.5f, KIWAMI_LIGHT_LOBE_GLOSSY,
+     KIWAMI_LIGHT_ORDER_XOR, 0.3f},
+    {"lazy_glossy_64", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 64, 0.5f, KIWAMI_LIGHT_LOBE_GLOSSY,
+     KIWAMI_LIGHT_ORDER_XOR, 0.05f},
 };
 
 std::vector<kiwami_light_choice> sample(const LightTreeHandle& tree, const Method& method,
                                         const std::vector<kiwami_light_receiver>& receivers) {
   std::vector<kiwami_light_choice> choices(receivers.size() * method.max_choices);
-  const kiwami_light_query query = method.query();
+  const std::vector<kiwami_light_lobe> lobes = method.glossy_lobes(receivers.size());
+  const kiwami_light_query query = method.query(lobes);
   check(kiwami_light_sample(tree.get(), receivers.data(), 0, choices.data(), 0, receivers.size(),
                             &query));
   return choices;
@@ -58,7 +89,8 @@ std::vector<float> probabilities(const LightTreeHandle& tree, const Method& meth
                                  const kiwami_light_receiver& receiver) {
   const std::vector<kiwami_light_receiver> receivers(lights.size(), receiver);
   std::vector<float> result(lights.size());
-  const kiwami_light_query query = method.query();
+  const std::vector<kiwami_light_lobe> lobes = method.glossy_lobes(receivers.size());
+  const kiwami_light_query query = method.query(lobes);
   check(kiwami_light_pdf(tree.get(), receivers.data(), 0, &lights[0].name, sizeof(SeenLight),
                          result.data(), 0, lights.size(), &query));
   return result;
@@ -116,7 +148,7 @@ TEST_P(LightMethods, NoContributingLightIsLeftOutAndPdfIsThatOfTheSample) {
         }
         const size_t light = index_of(lights, choice);
         // Of what the roulette accepts and has no room for, the rest is less likely to stay.
-        if (GetParam().method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {
+        if (GetParam().is_roulette()) {
           ASSERT_LE(choice.probability, p[light]);
           if (choices.back().light_id != KIWAMI_INVALID_ID) continue;
         }
@@ -130,7 +162,7 @@ TEST_P(LightMethods, NoContributingLightIsLeftOutAndPdfIsThatOfTheSample) {
 }
 
 TEST_P(LightMethods, ChoicesFollowTheProbabilities) {
-  if (GetParam().method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE && GetParam().max_choices < 64) {
+  if (GetParam().is_roulette() && GetParam().max_choices < 64) {
     GTEST_SKIP() << "with little room, not all that are accepted are chosen";
   }
   RecordProperty("seed", std::to_string(seed()));
@@ -180,7 +212,7 @@ TEST_P(LightMethods, EstimatesAreUnbiased) {
   RecordProperty("seed", std::to_string(seed()));
   Random random(seed(), 652);
   const DeviceHandle device = make_device(KIWAMI_ISA_AUTO, 1);
-  constexpr int kSamples = 200;
+  constexpr size_t kSamples = 200;
   double deviations = 0.0;
   int count = 0;
   for (uint32_t number = 0; number < 4; ++number) {
@@ -201,11 +233,19 @@ TEST_P(LightMethods, EstimatesAreUnbiased) {
       std::vector<kiwami_light_receiver> receivers(kSamples, receiver);
       for (auto& each : receivers) each.random = (random.bits() + 0.5) * 0x1p-32;
       const std::vector<kiwami_light_choice> choices = sample(tree, GetParam(), receivers);
-      double mean = 0.0;
-      for (const kiwami_light_choice& choice : choices) {
-        if (choice.light_id == KIWAMI_INVALID_ID) continue;
-        mean += f[index_of(lights, choice)] / static_cast<double>(choice.probability) / kSamples;
+      double mean = 0.0, square = 0.0;
+      for (size_t i = 0; i < kSamples; ++i) {
+        double estimate = 0.0;
+        for (uint32_t k = 0; k < GetParam().max_choices; ++k) {
+          const kiwami_light_choice& choice = choices[i * GetParam().max_choices + k];
+          if (choice.light_id == KIWAMI_INVALID_ID) break;
+          estimate += f[index_of(lights, choice)] / static_cast<double>(choice.probability);
+        }
+        mean += estimate / kSamples;
+        square += estimate * estimate / kSamples;
       }
+      // Where more are accepted than there is room for, which of them stay varies, too.
+      if (GetParam().is_roulette()) variance = std::max(variance, square - mean * mean);
       if (!(variance > 1e-9 * expected * expected)) {
         EXPECT_NEAR(mean, expected, 1e-4 * expected);
         continue;
@@ -282,6 +322,121 @@ TEST(LightSplitting, ThresholdSaysHowMuchIsSplit) {
     last = count;
   }
   EXPECT_GT(last, 10);
+}
+
+/// The numbers of all leaves, down the tree as the roulettes go.
+template <typename Numbers>
+void collect_numbers(const Numbers& numbers, typename Numbers::Value value, size_t node,
+                     uint32_t below, std::vector<double>& leaves) {
+  const double least = numbers.least(value, below);
+  if (below == 0) return leaves.push_back(least);
+  typename Numbers::Value children[2];
+  numbers.divide(value, node, below, children);
+  const size_t first = leaves.size();
+  for (size_t i = 0; i < 2; ++i) {
+    collect_numbers(numbers, children[i], 2 * node + 1 + i, below - 1, leaves);
+  }
+  const double actual =
+      *std::min_element(leaves.begin() + static_cast<std::ptrdiff_t>(first), leaves.end());
+  EXPECT_DOUBLE_EQ(least, actual) << "the least of a subtree, level " << below << " from below";
+}
+
+/// Marginals are uniform; returns the greatest correlation of two leaves.
+template <typename MakeNumbers>
+double correlation_of_numbers(const MakeNumbers& make, uint32_t levels) {
+  Random random(seed(), 656);
+  const size_t count = size_t{1} << levels;
+  const auto draws = static_cast<int>(std::max<uint64_t>(4000, ray_budget(20000)));
+  std::vector<double> products(count * count, 0.0);
+  std::vector<int> histogram(count * 8, 0);
+  for (int draw = 0; draw < draws; ++draw) {
+    const auto numbers =
+        make((static_cast<double>(random.bits()) + static_cast<double>(random.bits()) * 0x1p-32) *
+                 0x1p-32,
+             levels);
+    std::vector<double> leaves;
+    collect_numbers(numbers, numbers.root(), 0, levels, leaves);
+    for (size_t i = 0; i < count; ++i) {
+      EXPECT_TRUE(leaves[i] >= 0.0 && leaves[i] < 1.0);
+      ++histogram[8 * i + static_cast<size_t>(leaves[i] * 8.0)];
+      for (size_t j = 0; j < i; ++j) {
+        products[count * i + j] += (leaves[i] - 0.5) * (leaves[j] - 0.5);
+      }
+    }
+  }
+  const double expected = draws / 8.0;
+  double greatest = 0.0;
+  for (size_t i = 0; i < count; ++i) {
+    double square = 0.0;
+    for (size_t k = 0; k < 8; ++k) {
+      const double off = histogram[8 * i + k] - expected;
+      square += off * off / expected;
+    }
+    EXPECT_LT(square, 45.0) << "leaf " << i << ", 7 degrees of freedom";
+    for (size_t j = 0; j < i; ++j) {
+      greatest = std::max(greatest, std::fabs(12.0 * products[count * i + j] / draws));
+    }
+  }
+  return greatest;
+}
+
+TEST(RouletteNumbers, AreUniformAndTheLeastOfASubtreeIsKnown) {
+  const auto independent = [](double random, uint32_t levels) {
+    return kiwami::IndependentNumbers(random, levels);
+  };
+  const auto lazy = [](double random, uint32_t levels) {
+    return kiwami::LazyNumbers(random, levels, false);
+  };
+  const auto scrambled = [](double random, uint32_t levels) {
+    return kiwami::LazyNumbers(random, levels, true);
+  };
+  for (const uint32_t levels : {0u, 1u, 4u}) {
+    // 6 standard deviations of the estimate.
+    EXPECT_LT(correlation_of_numbers(independent, levels),
+              6.0 / std::sqrt(static_cast<double>(std::max<uint64_t>(4000, ray_budget(20000)))));
+    correlation_of_numbers(lazy, levels);
+    correlation_of_numbers(scrambled, levels);
+  }
+}
+
+TEST(LightRoulette, EqualRandomNumbersSeeTheSameRanges) {
+  // Two receivers at the same distance of one light agree on it, whatever their normals are.
+  const DeviceHandle device = make_device(KIWAMI_ISA_AUTO, 1);
+  LightScene scene;
+  kiwami_light light{};
+  light.power = 1.0f;
+  light.link_mask = ~uint64_t{0};
+  scene.lights = {light};
+  const LightTreeHandle tree = make_light_tree(device.get(), scene, 8);
+  kiwami_light_query query;
+  check(kiwami_light_query_init(&query, sizeof query));
+  query.method = KIWAMI_LIGHT_METHOD_CULLING;
+  query.max_choices = 2;
+  query.reach = 1.0f;
+  const kiwami_light_name name{0, KIWAMI_INVALID_ID};
+  kiwami_light_receiver receiver{};
+  receiver.link_mask = ~uint64_t{0};
+  for (const float distance : {0.5f, 2.0f, 4.0f}) {
+    receiver.position[0] = distance;
+    float p = 0.0f;
+    check(kiwami_light_pdf(tree.get(), &receiver, 0, &name, 0, &p, 0, 1, &query));
+    EXPECT_NEAR(p, std::min(1.0f, 1.0f / (distance * distance)), 1e-4f);
+  }
+  Random random(seed(), 657);
+  int accepted = 0;
+  for (int i = 0; i < 400; ++i) {
+    receiver.random = (random.bits() + 0.5) * 0x1p-32;
+    kiwami_light_choice choices[3][2];
+    const float places[3][3] = {{2, 0, 0}, {0, -2, 0}, {0, 0, 2}};
+    for (int k = 0; k < 3; ++k) {
+      std::copy_n(places[k], 3, receiver.position);
+      for (int axis = 0; axis < 3; ++axis) receiver.normal[axis] = -places[k][axis];
+      check(kiwami_light_sample(tree.get(), &receiver, 0, choices[k], 0, 1, &query));
+      EXPECT_EQ(choices[k][0].light_id, choices[0][0].light_id);
+    }
+    accepted += choices[0][0].light_id == 0 ? 1 : 0;
+  }
+  EXPECT_NEAR(accepted, 100, 50);
 }
 
 TEST(AliasTable, DrawsInProportionToWeights) {

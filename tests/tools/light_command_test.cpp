@@ -19,8 +19,8 @@ TEST(LightCommand, BenchComparesMethodsAndWidths) {
                    "256", "--light-samples", "8", "--rounds", "1", "--json", folder / "rows.json"});
   ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
   const Json rows = Json::parse(read_bytes(folder / "rows.json"), nullptr, false);
-  // Power and the roulette once, the others at four widths.
-  ASSERT_EQ(rows.size(), 2u + 3 * 4);
+  // Power and the roulettes once, the others at four widths.
+  ASSERT_EQ(rows.size(), 6u + 3 * 4);
   std::map<std::string, double> errors;
   for (const Json& row : rows) {
     for (const char* key : {"lights", "receivers", "mega_choices_per_second", "mse",
@@ -33,6 +33,8 @@ TEST(LightCommand, BenchComparesMethodsAndWidths) {
   EXPECT_LT(errors["tree"] / 4, errors["power"]);
   EXPECT_LT(errors["tree_splitting"] / 4, errors["power"]);
   EXPECT_LT(errors["lightcuts"] / 4, errors["power"]);
+  EXPECT_LT(errors["roulette"], errors["power"]);
+  EXPECT_LT(errors["lazy_roulette"], errors["power"]);
 }
 
 TEST(LightCommand, PicturesAreTheSameOnEveryIsaAndNumberOfThreads) {
@@ -47,7 +49,8 @@ TEST(LightCommand, PicturesAreTheSameOnEveryIsaAndNumberOfThreads) {
     EXPECT_NE(result.output.find("emissive triangles"), std::string::npos) << result.output;
     return read_bytes(picture);
   };
-  for (const char* method : {"power", "tree", "tree_splitting", "lightcuts", "lazy_roulette"}) {
+  for (const char* method : {"power", "tree", "tree_splitting", "lightcuts", "culling", "roulette",
+                             "roulette_sphere", "lazy_roulette", "lazy_scrambled"}) {
     const std::string scalar =
         render({"--lights", method, "--isa", "scalar", "--bvh-width", "8", "--threads", "1"});
     EXPECT_GT(scalar.size(), 24u * 16 * 3);

@@ -45,8 +45,7 @@ std::vector<uint32_t> parse_widths(const std::string& text) {
 }
 
 bool has_wide_tree(const LightMethodName& method) {
-  return method.method != KIWAMI_LIGHT_METHOD_POWER &&
-         method.method != KIWAMI_LIGHT_METHOD_LAZY_ROULETTE;
+  return method.method != KIWAMI_LIGHT_METHOD_POWER && !method.is_roulette();
 }
 
 /// One method on one tree, on the same receivers as all others.
@@ -57,7 +56,7 @@ class LightRun {
       : method_(method),
         device_(device),
         lights_(lights),
-        set_(device, lights, width, method.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {}
+        set_(device, lights, width, method.is_roulette()) {}
 
   /// Estimates what each receiver gets, `draws` calls of the method together. What is kept is
   /// timed: the choices, and the contributions that they ask for.

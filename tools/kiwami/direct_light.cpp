@@ -26,7 +26,7 @@ DirectLight::DirectLight(const Device& device, const SceneFile& file, double sha
                          const LightMethodName& method, uint32_t width)
     : triangles_(choose_emissive(file, share)),
       method_(method),
-      set_(device, triangles_, width, method.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {}
+      set_(device, triangles_, width, method.is_roulette()) {}
 
 float DirectLight::radiance_of(const kiwami_hit& hit) const {
   const auto place = std::lower_bound(

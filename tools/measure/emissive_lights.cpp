@@ -32,7 +32,12 @@ const std::vector<LightMethodName>& light_methods() {
       {"tree", KIWAMI_LIGHT_METHOD_TREE, 1},
       {"tree_splitting", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 8},
       {"lightcuts", KIWAMI_LIGHT_METHOD_LIGHTCUTS, 8},
+      {"culling", KIWAMI_LIGHT_METHOD_CULLING, 32},
+      {"roulette", KIWAMI_LIGHT_METHOD_ROULETTE, 32},
+      {"roulette_sphere", KIWAMI_LIGHT_METHOD_ROULETTE, 32, KIWAMI_LIGHT_LOBE_TANGENT_SPHERE},
       {"lazy_roulette", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 32},
+      {"lazy_scrambled", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 32, KIWAMI_LIGHT_LOBE_COSINE,
+       KIWAMI_LIGHT_ORDER_SCRAMBLED},
   };
   return methods;
 }
@@ -119,6 +124,8 @@ void LightSet::sample(const LightMethodName& method,
   check(kiwami_light_query_init(&query, sizeof query));
   query.method = method.method;
   query.max_choices = method.max_choices;
+  query.lobe = method.lobe;
+  query.order = method.order;
   check(
       kiwami_light_sample(tree_, receivers.data(), 0, choices.data(), 0, receivers.size(), &query));
 }

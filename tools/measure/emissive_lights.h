@@ -14,6 +14,13 @@ struct LightMethodName {
   const char* name;
   uint32_t method;       ///< KIWAMI_LIGHT_METHOD_*
   uint32_t max_choices;  ///< of a receiver at once
+  uint32_t lobe = KIWAMI_LIGHT_LOBE_COSINE;
+  uint32_t order = KIWAMI_LIGHT_ORDER_XOR;
+
+  bool is_roulette() const {
+    return method == KIWAMI_LIGHT_METHOD_CULLING || method == KIWAMI_LIGHT_METHOD_ROULETTE ||
+           method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE;
+  }
 };
 const std::vector<LightMethodName>& light_methods();
 /// "power, tree, ...".

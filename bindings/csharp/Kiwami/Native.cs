@@ -562,14 +562,25 @@ internal unsafe struct kiwami_light_name {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_lobe {
+  public fixed float axis[3];
+  public float roughness;
+  public const int Size = 16;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_light_query {
   public uint struct_size;
   public uint flags;
   public uint method;
   public uint max_choices;
   public float threshold;
-  public uint reserved;
-  public const int Size = 24;
+  public uint lobe;
+  public uint order;
+  public float reach;
+  public IntPtr lobes;
+  public ulong lobe_stride;
+  public const int Size = 48;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -852,6 +863,13 @@ internal static class Native {
   public const uint KIWAMI_LIGHT_METHOD_TREE_SPLITTING = 2;
   public const uint KIWAMI_LIGHT_METHOD_LIGHTCUTS = 3;
   public const uint KIWAMI_LIGHT_METHOD_LAZY_ROULETTE = 4;
+  public const uint KIWAMI_LIGHT_METHOD_CULLING = 5;
+  public const uint KIWAMI_LIGHT_METHOD_ROULETTE = 6;
+  public const uint KIWAMI_LIGHT_LOBE_COSINE = 0;
+  public const uint KIWAMI_LIGHT_LOBE_TANGENT_SPHERE = 1;
+  public const uint KIWAMI_LIGHT_LOBE_GLOSSY = 2;
+  public const uint KIWAMI_LIGHT_ORDER_XOR = 0;
+  public const uint KIWAMI_LIGHT_ORDER_SCRAMBLED = 1;
   public const uint KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
   public const uint KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   public const uint KIWAMI_MAX_TIME_STEPS = 129;

@@ -134,6 +134,13 @@ KIWAMI_LIGHT_METHOD_POWER = 1
 KIWAMI_LIGHT_METHOD_TREE_SPLITTING = 2
 KIWAMI_LIGHT_METHOD_LIGHTCUTS = 3
 KIWAMI_LIGHT_METHOD_LAZY_ROULETTE = 4
+KIWAMI_LIGHT_METHOD_CULLING = 5
+KIWAMI_LIGHT_METHOD_ROULETTE = 6
+KIWAMI_LIGHT_LOBE_COSINE = 0
+KIWAMI_LIGHT_LOBE_TANGENT_SPHERE = 1
+KIWAMI_LIGHT_LOBE_GLOSSY = 2
+KIWAMI_LIGHT_ORDER_XOR = 0
+KIWAMI_LIGHT_ORDER_SCRAMBLED = 1
 KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1
 KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1
 KIWAMI_MAX_TIME_STEPS = 129
@@ -717,6 +724,13 @@ class kiwami_light_name(ctypes.Structure):
     ]
 
 
+class kiwami_light_lobe(ctypes.Structure):
+    _fields_ = [
+        ("axis", ctypes.c_float * 3),
+        ("roughness", ctypes.c_float),
+    ]
+
+
 class kiwami_light_query(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
@@ -724,7 +738,11 @@ class kiwami_light_query(ctypes.Structure):
         ("method", ctypes.c_uint32),
         ("max_choices", ctypes.c_uint32),
         ("threshold", ctypes.c_float),
-        ("reserved", ctypes.c_uint32),
+        ("lobe", ctypes.c_uint32),
+        ("order", ctypes.c_uint32),
+        ("reach", ctypes.c_float),
+        ("lobes", ctypes.c_void_p),
+        ("lobe_stride", ctypes.c_uint64),
     ]
 
 
@@ -915,7 +933,8 @@ SIZES = {
     kiwami_light_receiver: 56,
     kiwami_light_choice: 24,
     kiwami_light_name: 8,
-    kiwami_light_query: 24,
+    kiwami_light_lobe: 16,
+    kiwami_light_query: 48,
     kiwami_moving_mesh_desc: 96,
     kiwami_opacity_desc: 56,
     kiwami_spheres_desc: 48,

@@ -138,6 +138,13 @@ pub const KIWAMI_LIGHT_METHOD_POWER: u32 = 1;
 pub const KIWAMI_LIGHT_METHOD_TREE_SPLITTING: u32 = 2;
 pub const KIWAMI_LIGHT_METHOD_LIGHTCUTS: u32 = 3;
 pub const KIWAMI_LIGHT_METHOD_LAZY_ROULETTE: u32 = 4;
+pub const KIWAMI_LIGHT_METHOD_CULLING: u32 = 5;
+pub const KIWAMI_LIGHT_METHOD_ROULETTE: u32 = 6;
+pub const KIWAMI_LIGHT_LOBE_COSINE: u32 = 0;
+pub const KIWAMI_LIGHT_LOBE_TANGENT_SPHERE: u32 = 1;
+pub const KIWAMI_LIGHT_LOBE_GLOSSY: u32 = 2;
+pub const KIWAMI_LIGHT_ORDER_XOR: u32 = 0;
+pub const KIWAMI_LIGHT_ORDER_SCRAMBLED: u32 = 1;
 pub const KIWAMI_LIGHT_QUERY_CALLING_THREAD: u32 = 1;
 pub const KIWAMI_MOVING_MESH_SHARE_BUFFERS: u32 = 1;
 pub const KIWAMI_MAX_TIME_STEPS: u32 = 129;
@@ -771,15 +778,27 @@ const _: () = assert!(std::mem::size_of::<kiwami_light_name>() == 8);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct kiwami_light_lobe {
+    pub axis: [f32; 3],
+    pub roughness: f32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_lobe>() == 16);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct kiwami_light_query {
     pub struct_size: u32,
     pub flags: u32,
     pub method: u32,
     pub max_choices: u32,
     pub threshold: f32,
-    pub reserved: u32,
+    pub lobe: u32,
+    pub order: u32,
+    pub reach: f32,
+    pub lobes: *const kiwami_light_lobe,
+    pub lobe_stride: u64,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 24);
+const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 48);
 
 #[repr(C)]
 #[derive(Clone, Copy)]

@@ -139,6 +139,13 @@ final class Native {
   static final int KIWAMI_LIGHT_METHOD_TREE_SPLITTING = 2;
   static final int KIWAMI_LIGHT_METHOD_LIGHTCUTS = 3;
   static final int KIWAMI_LIGHT_METHOD_LAZY_ROULETTE = 4;
+  static final int KIWAMI_LIGHT_METHOD_CULLING = 5;
+  static final int KIWAMI_LIGHT_METHOD_ROULETTE = 6;
+  static final int KIWAMI_LIGHT_LOBE_COSINE = 0;
+  static final int KIWAMI_LIGHT_LOBE_TANGENT_SPHERE = 1;
+  static final int KIWAMI_LIGHT_LOBE_GLOSSY = 2;
+  static final int KIWAMI_LIGHT_ORDER_XOR = 0;
+  static final int KIWAMI_LIGHT_ORDER_SCRAMBLED = 1;
   static final int KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
   static final int KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   static final int KIWAMI_MAX_TIME_STEPS = 129;
@@ -670,15 +677,26 @@ final class Native {
     static final int INSTANCE_ID = 4;
   }
 
+  /** Offsets of kiwami_light_lobe. */
+  static final class LightLobe {
+    static final int STRUCT_BYTES = 16;
+    static final int AXIS = 0;
+    static final int ROUGHNESS = 12;
+  }
+
   /** Offsets of kiwami_light_query. */
   static final class LightQuery {
-    static final int STRUCT_BYTES = 24;
+    static final int STRUCT_BYTES = 48;
     static final int STRUCT_SIZE = 0;
     static final int FLAGS = 4;
     static final int METHOD = 8;
     static final int MAX_CHOICES = 12;
     static final int THRESHOLD = 16;
-    static final int RESERVED = 20;
+    static final int LOBE = 20;
+    static final int ORDER = 24;
+    static final int REACH = 28;
+    static final int LOBES = 32;
+    static final int LOBE_STRIDE = 40;
   }
 
   /** Offsets of kiwami_moving_mesh_desc. */

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// The random numbers that lights are compared with in a hierarchical Russian roulette, known by the
+// least of a subtree before the others are: for leaves of a perfect binary tree.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace kiwami {
+
+/// Random bits for number index: SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, "Fast Splittable
+/// Pseudorandom Number Generators", OOPSLA 2014) over the receiver's random number.
+inline uint64_t mixed_bits(double random, uint64_t index) {
+  uint64_t bits;
+  std::memcpy(&bits, &random, sizeof bits);
+  bits += (index + 1) * 0x9E3779B97F4A7C15u;
+  bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+  bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+  return bits ^ (bits >> 31);
+}
+inline double number_of_bits(uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
+
+/// Nodes' indices are beyond those of leaves.
+constexpr uint64_t kNodeStream = uint64_t{1} << 40;
+
+/// One random number for all (S. Ogaki's talk "Acceleration Data Structures for Ray Tracing", CEDEC
+/// 2019, the lazy variant): a number R of as many bits as the tree has levels and a uniform number
+/// xi give leaf i ((i xor R) + xi) / 2^levels. Each is uniform, together they fill the unit
+/// interval evenly. Or, with R's bit another one at each node, the scrambling of A. B. Owen,
+/// "Randomly Permuted (t, m, s)-Nets and (t, s)-Sequences", 1995.
+class LazyNumbers {
+ public:
+  using Value = uint32_t;  ///< the first bits of the numbers of a subtree
+
+  LazyNumbers(double random, uint32_t level_count, bool is_scrambled)
+      : random_(random),
+        count_(static_cast<double>(uint64_t{1} << level_count)),
+        turn_(static_cast<uint32_t>(random * count_)),
+        rest_(random * count_ - static_cast<double>(turn_)),
+        is_scrambled_(is_scrambled) {}
+
+  Value root() const { return 0; }
+  double least(Value value, uint32_t below) const {
+    return (static_cast<double>(uint64_t{value} << below) + rest_) / count_;
+  }
+  void divide(Value value, size_t node, uint32_t below, Value (&children)[2]) const {
+    const uint32_t bit = is_scrambled_
+                             ? static_cast<uint32_t>(mixed_bits(random_, kNodeStream + node) & 1)
+                             : turn_ >> (below - 1) & 1;
+    children[0] = 2 * value + bit;
+    children[1] = 2 * value + (bit ^ 1);
+  }
+
+ private:
+  double random_, count_;
+  uint32_t turn_;
+  double rest_;
+  bool is_scrambled_;
+};
+
+/// Independent numbers (Tokuyoshi & Harada 2019): the least of a node's is that of one of its
+/// children, each with the same probability since they have as many leaves; the other's is that of
+/// as many uniform numbers which are not less. The least of 2^n numbers takes n square roots, in
+/// place of the paper's power, so that it is the same to the bit everywhere; places without a light
+/// have numbers, too.
+class IndependentNumbers {
+ public:
+  using Value = double;  ///< the least of a subtree
+
+  IndependentNumbers(double random, uint32_t level_count)
+      : random_(random),
+        root_(least_of_uniform(number_of_bits(mixed_bits(random, kNodeStream - 1)), level_count)) {}
+
+  Value root() const { return root_; }
+  double least(Value value, uint32_t) const { return value; }
+  void divide(Value value, size_t node, uint32_t below, Value (&children)[2]) const {
+    const uint64_t bits = mixed_bits(random_, kNodeStream + node);
+    const double other = least_of_uniform(number_of_bits(bits), below - 1);
+    children[bits & 1] = value;
+    children[(bits & 1) ^ 1] = value + (1.0 - value) * other;
+  }
+
+  /// 1 - (1 - u)^(1 / 2^n), each square root of which is taken as 1 - sqrt(1 - u) = u / (1 + sqrt(1
+  /// - u)), which keeps all digits of what is small.
+  static double least_of_uniform(double u, uint32_t n) {
+    for (; n != 0; --n) u /= 1.0 + std::sqrt(1.0 - u);
+    return u;
+  }
+
+ private:
+  double random_;
+  double root_;
+};
+
+}  // namespace kiwami
