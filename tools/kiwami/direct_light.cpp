@@ -101,9 +101,12 @@ void DirectLight::expose(Tracing& tracing, const Camera& camera) {
   batch.rays = primary_rays(camera).rays;
   for (size_t i = 0; i < batch.randoms.size(); ++i) batch.randoms[i] = Random(i, 95);
   std::vector<double> sums(batch.rays.size(), 0.0);
-  for (int sample = 0; sample < 16; ++sample) {
+  const uint32_t samples = std::max(1u, 16 / method_.max_choices);
+  for (uint32_t sample = 0; sample < samples; ++sample) {
     shade(tracing, batch);
-    for (size_t i = 0; i < sums.size(); ++i) sums[i] += static_cast<double>(batch.colors[i].x) / 16;
+    for (size_t i = 0; i < sums.size(); ++i) {
+      sums[i] += static_cast<double>(batch.colors[i].x) / samples;
+    }
   }
   std::erase_if(sums, [](double sum) { return !(sum > 0.0); });
   if (!sums.empty()) exposure_ = kMiddleGrey / static_cast<float>(median(sums));
