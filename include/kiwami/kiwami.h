@@ -8,6 +8,7 @@
 #include "base.h"
 #include "bvh.h"
 #include "device.h"
+#include "distribution.h"
 #include "export.h"
 #include "geometry.h"
 #include "instances.h"

@@ -42,16 +42,15 @@ AliasTable::AliasTable(const Array<double>& weights, Memory& memory) {
   }
 }
 
-AliasTable::Draw AliasTable::draw(double random) const {
+Draw AliasTable::draw(double random) const {
   const double place = random * static_cast<double>(entries_.size());
   const auto index =
       std::min(static_cast<uint32_t>(place), static_cast<uint32_t>(entries_.size() - 1));
   const Entry& entry = entries_[index];
   const double rest = place - static_cast<double>(index);
   const double threshold = static_cast<double>(entry.threshold);
-  constexpr double kGreatest = 1.0 - 0x1p-53;
-  if (rest < threshold) return {index, std::min(rest / threshold, kGreatest)};
-  return {entry.alias, std::min((rest - threshold) / (1.0 - threshold), kGreatest)};
+  if (rest < threshold) return {index, std::min(rest / threshold, Draw::kGreatestRandom)};
+  return {entry.alias, std::min((rest - threshold) / (1.0 - threshold), Draw::kGreatestRandom)};
 }
 
 }  // namespace kiwami

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/memory.h"
+#include "lights/draw.h"
 
 namespace kiwami {
 
@@ -10,11 +11,7 @@ namespace kiwami {
 /// Vose, "A Linear Algorithm for Generating Random Numbers with a Given Distribution", 1991.
 class AliasTable {
  public:
-  struct Draw {
-    uint32_t index;
-    double random;  ///< anew, 0 to 1
-  };
-
+  using Draw = kiwami::Draw;
   AliasTable() = default;
   /// weights are 0 or more, finite. Empty if all of them are 0.
   AliasTable(const Array<double>& weights, Memory& memory);

@@ -41,6 +41,31 @@ static void check_ray_and_hit(void) {
   FIELD(kiwami_hit, instance_id, 32);
 }
 
+static void check_distributions(void) {
+  SIZE(kiwami_distribution_info, 48);
+  FIELD(kiwami_distribution_info, struct_size, 0);
+  FIELD(kiwami_distribution_info, method, 4);
+  FIELD(kiwami_distribution_info, weight_count, 8);
+  FIELD(kiwami_distribution_info, bytes, 16);
+  FIELD(kiwami_distribution_info, total, 24);
+  FIELD(kiwami_distribution_info, mean_steps, 32);
+  FIELD(kiwami_distribution_info, most_steps, 40);
+  FIELD(kiwami_distribution_info, reserved, 44);
+  SIZE(kiwami_draw, 16);
+  FIELD(kiwami_draw, index, 0);
+  FIELD(kiwami_draw, probability, 4);
+  FIELD(kiwami_draw, random, 8);
+}
+
+static void check_distribution_desc(void) {
+  SIZE(kiwami_distribution_desc, 32);
+  FIELD(kiwami_distribution_desc, struct_size, 0);
+  FIELD(kiwami_distribution_desc, method, 4);
+  FIELD(kiwami_distribution_desc, weights, 8);
+  FIELD(kiwami_distribution_desc, weight_stride, 16);
+  FIELD(kiwami_distribution_desc, weight_count, 24);
+}
+
 static void check_lights(void) {
   SIZE(kiwami_light, 96);
   FIELD(kiwami_light, type, 0);
@@ -668,6 +693,7 @@ int main(void) {
     check_fields();
     check_bvh_desc();
     check_light_descs();
+    check_distribution_desc();
     check_interpolation();
     check_opacity_desc();
   }
@@ -677,6 +703,7 @@ int main(void) {
   check_exported_nodes();
   check_files();
   check_lights();
+  check_distributions();
   check_numbers();
   return failures != 0;
 }

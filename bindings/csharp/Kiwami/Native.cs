@@ -367,6 +367,37 @@ internal unsafe struct kiwami_ray_visits {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_distribution_desc {
+  public uint struct_size;
+  public uint method;
+  public IntPtr weights;
+  public ulong weight_stride;
+  public ulong weight_count;
+  public const int Size = 32;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_distribution_info {
+  public uint struct_size;
+  public uint method;
+  public ulong weight_count;
+  public ulong bytes;
+  public double total;
+  public double mean_steps;
+  public uint most_steps;
+  public uint reserved;
+  public const int Size = 48;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_draw {
+  public uint index;
+  public float probability;
+  public double random;
+  public const int Size = 16;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_binary_node {
   public fixed float lower[3];
   public uint first;
@@ -834,6 +865,8 @@ internal static class Native {
   public const uint KIWAMI_MEASURE_WITHOUT_EPO = 1;
   public const uint KIWAMI_COUNT_CLOSEST_HIT = 0;
   public const uint KIWAMI_COUNT_ANY_HIT = 1;
+  public const uint KIWAMI_DISTRIBUTION_RADIX_TREE_FOREST = 0;
+  public const uint KIWAMI_DISTRIBUTION_ALIAS_TABLE = 1;
   public const uint KIWAMI_EXPORT_BINARY = 1;
   public const uint KIWAMI_EXPORT_WIDE4 = 2;
   public const uint KIWAMI_EXPORT_WIDE8 = 3;
@@ -1062,6 +1095,27 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_scene_count_visits(IntPtr scene, IntPtr rays, UIntPtr ray_stride, UIntPtr count, uint query, IntPtr visits, IntPtr each, UIntPtr each_stride);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_distribution_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_distribution_create(IntPtr device, IntPtr desc, IntPtr distribution);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_distribution_retain(IntPtr distribution);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_distribution_release(IntPtr distribution);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_distribution_get_info(IntPtr distribution, IntPtr info);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_distribution_sample(IntPtr distribution, IntPtr randoms, UIntPtr random_stride, IntPtr draws, UIntPtr draw_stride, UIntPtr count);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_distribution_pdf(IntPtr distribution, IntPtr indices, UIntPtr index_stride, IntPtr probabilities, UIntPtr probability_stride, UIntPtr count);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_bvh_export_counts(IntPtr bvh, uint format, IntPtr node_count, IntPtr primitive_count);

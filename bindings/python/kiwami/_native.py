@@ -105,6 +105,8 @@ KIWAMI_QUERY_CALLING_THREAD = 1
 KIWAMI_MEASURE_WITHOUT_EPO = 1
 KIWAMI_COUNT_CLOSEST_HIT = 0
 KIWAMI_COUNT_ANY_HIT = 1
+KIWAMI_DISTRIBUTION_RADIX_TREE_FOREST = 0
+KIWAMI_DISTRIBUTION_ALIAS_TABLE = 1
 KIWAMI_EXPORT_BINARY = 1
 KIWAMI_EXPORT_WIDE4 = 2
 KIWAMI_EXPORT_WIDE8 = 3
@@ -529,6 +531,37 @@ class kiwami_ray_visits(ctypes.Structure):
     ]
 
 
+class kiwami_distribution_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("method", ctypes.c_uint32),
+        ("weights", ctypes.c_void_p),
+        ("weight_stride", ctypes.c_uint64),
+        ("weight_count", ctypes.c_uint64),
+    ]
+
+
+class kiwami_distribution_info(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("method", ctypes.c_uint32),
+        ("weight_count", ctypes.c_uint64),
+        ("bytes", ctypes.c_uint64),
+        ("total", ctypes.c_double),
+        ("mean_steps", ctypes.c_double),
+        ("most_steps", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
+class kiwami_draw(ctypes.Structure):
+    _fields_ = [
+        ("index", ctypes.c_uint32),
+        ("probability", ctypes.c_float),
+        ("random", ctypes.c_double),
+    ]
+
+
 class kiwami_binary_node(ctypes.Structure):
     _fields_ = [
         ("lower", ctypes.c_float * 3),
@@ -918,6 +951,9 @@ SIZES = {
     kiwami_bvh_node_measures: 24,
     kiwami_visits: 48,
     kiwami_ray_visits: 8,
+    kiwami_distribution_desc: 32,
+    kiwami_distribution_info: 48,
+    kiwami_draw: 16,
     kiwami_binary_node: 32,
     kiwami_wide4_node: 128,
     kiwami_wide8_node: 256,
@@ -1197,6 +1233,38 @@ def declare(library):
         ctypes.c_uint32,
         ctypes.c_void_p,
         ctypes.c_void_p,
+        ctypes.c_size_t,
+    ]
+    library.kiwami_distribution_desc_init.restype = ctypes.c_int32
+    library.kiwami_distribution_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_distribution_create.restype = ctypes.c_int32
+    library.kiwami_distribution_create.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_distribution_retain.restype = None
+    library.kiwami_distribution_retain.argtypes = [ctypes.c_void_p]
+    library.kiwami_distribution_release.restype = None
+    library.kiwami_distribution_release.argtypes = [ctypes.c_void_p]
+    library.kiwami_distribution_get_info.restype = ctypes.c_int32
+    library.kiwami_distribution_get_info.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_distribution_sample.restype = ctypes.c_int32
+    library.kiwami_distribution_sample.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_size_t,
+    ]
+    library.kiwami_distribution_pdf.restype = ctypes.c_int32
+    library.kiwami_distribution_pdf.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
         ctypes.c_size_t,
     ]
     library.kiwami_bvh_export_counts.restype = ctypes.c_int32

@@ -109,6 +109,8 @@ pub const KIWAMI_QUERY_CALLING_THREAD: u32 = 1;
 pub const KIWAMI_MEASURE_WITHOUT_EPO: u32 = 1;
 pub const KIWAMI_COUNT_CLOSEST_HIT: u32 = 0;
 pub const KIWAMI_COUNT_ANY_HIT: u32 = 1;
+pub const KIWAMI_DISTRIBUTION_RADIX_TREE_FOREST: u32 = 0;
+pub const KIWAMI_DISTRIBUTION_ALIAS_TABLE: u32 = 1;
 pub const KIWAMI_EXPORT_BINARY: u32 = 1;
 pub const KIWAMI_EXPORT_WIDE4: u32 = 2;
 pub const KIWAMI_EXPORT_WIDE8: u32 = 3;
@@ -165,6 +167,11 @@ pub struct kiwami_bvh {
 
 #[repr(C)]
 pub struct kiwami_device {
+    _private: [u8; 0],
+}
+
+#[repr(C)]
+pub struct kiwami_distribution {
     _private: [u8; 0],
 }
 
@@ -565,6 +572,40 @@ pub struct kiwami_ray_visits {
     pub leaf_visits: u32,
 }
 const _: () = assert!(std::mem::size_of::<kiwami_ray_visits>() == 8);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_distribution_desc {
+    pub struct_size: u32,
+    pub method: u32,
+    pub weights: *const c_void,
+    pub weight_stride: u64,
+    pub weight_count: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_distribution_desc>() == 32);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_distribution_info {
+    pub struct_size: u32,
+    pub method: u32,
+    pub weight_count: u64,
+    pub bytes: u64,
+    pub total: f64,
+    pub mean_steps: f64,
+    pub most_steps: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_distribution_info>() == 48);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_draw {
+    pub index: u32,
+    pub probability: f32,
+    pub random: f64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_draw>() == 16);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -1017,6 +1058,13 @@ extern "C" {
     pub fn kiwami_bvh_measure_desc_init(desc: *mut kiwami_bvh_measure_desc, size: usize) -> kiwami_result;
     pub fn kiwami_bvh_measure(bvh: *const kiwami_bvh, desc: *const kiwami_bvh_measure_desc, measures: *mut kiwami_bvh_measures, nodes: *mut kiwami_bvh_node_measures, stride: usize) -> kiwami_result;
     pub fn kiwami_scene_count_visits(scene: *const kiwami_scene, rays: *const kiwami_ray, ray_stride: usize, count: usize, query: u32, visits: *mut kiwami_visits, each: *mut kiwami_ray_visits, each_stride: usize) -> kiwami_result;
+    pub fn kiwami_distribution_desc_init(desc: *mut kiwami_distribution_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_distribution_create(device: *mut kiwami_device, desc: *const kiwami_distribution_desc, distribution: *mut *mut kiwami_distribution) -> kiwami_result;
+    pub fn kiwami_distribution_retain(distribution: *mut kiwami_distribution);
+    pub fn kiwami_distribution_release(distribution: *mut kiwami_distribution);
+    pub fn kiwami_distribution_get_info(distribution: *const kiwami_distribution, info: *mut kiwami_distribution_info) -> kiwami_result;
+    pub fn kiwami_distribution_sample(distribution: *const kiwami_distribution, randoms: *const f64, random_stride: usize, draws: *mut kiwami_draw, draw_stride: usize, count: usize) -> kiwami_result;
+    pub fn kiwami_distribution_pdf(distribution: *const kiwami_distribution, indices: *const u32, index_stride: usize, probabilities: *mut f32, probability_stride: usize, count: usize) -> kiwami_result;
     pub fn kiwami_bvh_export_counts(bvh: *const kiwami_bvh, format: u32, node_count: *mut usize, primitive_count: *mut usize) -> kiwami_result;
     pub fn kiwami_bvh_export(bvh: *const kiwami_bvh, format: u32, nodes: *mut c_void, node_bytes: usize, primitives: *mut kiwami_bvh_primitive, primitive_count: usize) -> kiwami_result;
     pub fn kiwami_save_desc_init(desc: *mut kiwami_save_desc, size: usize) -> kiwami_result;

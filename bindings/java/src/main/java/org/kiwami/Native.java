@@ -110,6 +110,8 @@ final class Native {
   static final int KIWAMI_MEASURE_WITHOUT_EPO = 1;
   static final int KIWAMI_COUNT_CLOSEST_HIT = 0;
   static final int KIWAMI_COUNT_ANY_HIT = 1;
+  static final int KIWAMI_DISTRIBUTION_RADIX_TREE_FOREST = 0;
+  static final int KIWAMI_DISTRIBUTION_ALIAS_TABLE = 1;
   static final int KIWAMI_EXPORT_BINARY = 1;
   static final int KIWAMI_EXPORT_WIDE4 = 2;
   static final int KIWAMI_EXPORT_WIDE8 = 3;
@@ -480,6 +482,37 @@ final class Native {
     static final int STRUCT_BYTES = 8;
     static final int NODE_VISITS = 0;
     static final int LEAF_VISITS = 4;
+  }
+
+  /** Offsets of kiwami_distribution_desc. */
+  static final class DistributionDesc {
+    static final int STRUCT_BYTES = 32;
+    static final int STRUCT_SIZE = 0;
+    static final int METHOD = 4;
+    static final int WEIGHTS = 8;
+    static final int WEIGHT_STRIDE = 16;
+    static final int WEIGHT_COUNT = 24;
+  }
+
+  /** Offsets of kiwami_distribution_info. */
+  static final class DistributionInfo {
+    static final int STRUCT_BYTES = 48;
+    static final int STRUCT_SIZE = 0;
+    static final int METHOD = 4;
+    static final int WEIGHT_COUNT = 8;
+    static final int BYTES = 16;
+    static final int TOTAL = 24;
+    static final int MEAN_STEPS = 32;
+    static final int MOST_STEPS = 40;
+    static final int RESERVED = 44;
+  }
+
+  /** Offsets of kiwami_draw. */
+  static final class Draw {
+    static final int STRUCT_BYTES = 16;
+    static final int INDEX = 0;
+    static final int PROBABILITY = 4;
+    static final int RANDOM = 8;
   }
 
   /** Offsets of kiwami_binary_node. */
@@ -969,6 +1002,20 @@ final class Native {
   static native int kiwami_bvh_measure(Pointer bvh, Pointer desc, Pointer measures, Pointer nodes, long stride);
 
   static native int kiwami_scene_count_visits(Pointer scene, Pointer rays, long rayStride, long count, int query, Pointer visits, Pointer each, long eachStride);
+
+  static native int kiwami_distribution_desc_init(Pointer desc, long size);
+
+  static native int kiwami_distribution_create(Pointer device, Pointer desc, Pointer distribution);
+
+  static native void kiwami_distribution_retain(Pointer distribution);
+
+  static native void kiwami_distribution_release(Pointer distribution);
+
+  static native int kiwami_distribution_get_info(Pointer distribution, Pointer info);
+
+  static native int kiwami_distribution_sample(Pointer distribution, Pointer randoms, long randomStride, Pointer draws, long drawStride, long count);
+
+  static native int kiwami_distribution_pdf(Pointer distribution, Pointer indices, long indexStride, Pointer probabilities, long probabilityStride, long count);
 
   static native int kiwami_bvh_export_counts(Pointer bvh, int format, Pointer nodeCount, Pointer primitiveCount);
 
