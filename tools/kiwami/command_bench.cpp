@@ -7,6 +7,7 @@
 
 #include "kiwami/bench.h"
 #include "kiwami/bench_change.h"
+#include "kiwami/bench_distributions.h"
 #include "kiwami/bench_lights.h"
 #include "kiwami/bench_pipelines.h"
 #include "kiwami/bench_queries.h"
@@ -46,6 +47,7 @@ struct BenchOptions {
   std::string pipelines;
   std::string structures;
   bool change = false;
+  bool distributions = false;
   std::string queries;
   uint32_t max_hits = 8;
   uint32_t edit = 0;
@@ -273,6 +275,23 @@ int run_light_table(const BenchOptions& options, const BenchSettings& settings,
   return 0;
 }
 
+/// The table of ways to draw triangles by their areas.
+int run_distribution_table(const BenchOptions& options, const BenchSettings& settings,
+                           const std::vector<std::string>& scenes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  bool all_right = true;
+  for (const std::string& scene : scenes) {
+    const std::vector<DistributionRow> rows = run_distributions(scene, settings);
+    print_table(rows);
+    for (const DistributionRow& row : rows) {
+      json.push_back(to_json(row));
+      all_right = all_right && row.wrong.empty();
+    }
+    if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
+  }
+  return all_right ? 0 : kWrongAnswer;
+}
+
 int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   const std::vector<std::string> scenes = choose_scenes(options);
@@ -287,6 +306,7 @@ int run(const BenchOptions& options) {
   if (options.change) return run_change_table(options, settings, scenes);
   if (!options.structures.empty()) return run_structure_table(options, settings, scenes);
   if (!options.queries.empty()) return run_query_table(options, settings, scenes);
+  if (options.distributions) return run_distribution_table(options, settings, scenes);
   if (options.lights.is_asked) return run_light_table(options, settings, scenes);
   const std::string peer = peer_name(settings);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -402,6 +422,9 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
                      "bih and bvh, next to the library, one ray a call on one thread");
   command.add_flag("--change", options.change,
                    "Refits of the scene with moving vertices, in place of rays");
+  command.add_flag("--distributions", options.distributions,
+                   "Triangles drawn by their areas, --ray-count of them on one thread, by each "
+                   "kind of discrete distribution, in place of rays");
   command.add_option("--queries", options.queries,
                      "A table of queries on one thread, some of " + joined(query_names()) +
                          ", next to what they replace: stepping from hit to hit, and Embree's "

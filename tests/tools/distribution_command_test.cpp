@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// `kiwami bench --distributions`: discrete distributions from the command line.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "run_command.h"
+
+namespace kiwami_tests {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(DistributionCommand, BenchComparesTheMethods) {
+  const TemporaryFolder folder;
+  const CommandResult result =
+      run_command({"bench", "--distributions", "room:8000", "--ray-count", "20000", "--rounds", "3",
+                   "--json", folder / "rows.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
+  EXPECT_NE(result.output.find("radix_tree_forest"), std::string::npos) << result.output;
+  std::map<std::string, Json> rows;
+  for (const Json& row : Json::parse(read_bytes(folder / "rows.json"), nullptr, false)) {
+    for (const char* key : {"weights", "bytes_per_weight", "mean_steps", "most_steps",
+                            "mega_draws_per_second", "ratio", "unevenness"}) {
+      EXPECT_GT(row.at(key).get<double>(), 0.0) << key << " of " << row;
+    }
+    EXPECT_EQ(row.at("wrong"), "");
+    rows[row.at("method")] = row;
+  }
+  ASSERT_EQ(rows.size(), 3u);
+  const Json& forest = rows.at("radix_tree_forest");
+  EXPECT_EQ(forest.at("draws_hash"), rows.at("binary_search").at("draws_hash"));
+  EXPECT_NE(forest.at("draws_hash"), rows.at("alias_table").at("draws_hash"));
+  EXPECT_LT(forest.at("mean_steps").get<double>(),
+            rows.at("binary_search").at("mean_steps").get<double>() / 4);
+  // What a low-discrepancy sequence is for.
+  EXPECT_LT(forest.at("unevenness").get<double>(),
+            rows.at("alias_table").at("unevenness").get<double>());
+}
+
+TEST(DistributionCommand, ASceneThatIsNotThereIsAnError) {
+  const CommandResult result = run_command({"bench", "--distributions", "nowhere.obj"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("nowhere.obj"), std::string::npos) << result.errors;
+}
+
+}  // namespace
+}  // namespace kiwami_tests
