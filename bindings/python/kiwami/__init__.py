@@ -47,6 +47,7 @@ globals().update(
                 "KIWAMI_CONTRACTION_",
                 "KIWAMI_QUALITY_",
                 "KIWAMI_LIGHT_",
+                "KIWAMI_FILTER_",
             )
         )
     }

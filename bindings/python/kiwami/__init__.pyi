@@ -83,6 +83,7 @@ class Hits:
     def __getitem__(self, index: Any) -> Hits: ...
 
 _Cull = Literal["back", "front"] | None
+_Filter = Callable[[Any], int]
 
 class Scene(_Handle):
     def __init__(
@@ -143,6 +144,7 @@ class Scene(_Handle):
         time: ArrayLike = ...,
         mask: ArrayLike = ...,
         cull: _Cull = ...,
+        filter: _Filter | None = ...,
         out: Hits | NDArray[np.void] | None = ...,
     ) -> Hits: ...
     def any(
@@ -155,6 +157,7 @@ class Scene(_Handle):
         time: ArrayLike = ...,
         mask: ArrayLike = ...,
         cull: _Cull = ...,
+        filter: _Filter | None = ...,
         out: NDArray[np.bool_] | None = ...,
     ) -> NDArray[np.bool_]: ...
     def multi_hit(
@@ -168,6 +171,7 @@ class Scene(_Handle):
         time: ArrayLike = ...,
         mask: ArrayLike = ...,
         cull: _Cull = ...,
+        filter: _Filter | None = ...,
     ) -> tuple[Hits, NDArray[np.int64]]: ...
     def count(
         self,
@@ -179,6 +183,7 @@ class Scene(_Handle):
         time: ArrayLike = ...,
         mask: ArrayLike = ...,
         cull: _Cull = ...,
+        filter: _Filter | None = ...,
     ) -> NDArray[np.uint32]: ...
 
 class LightTree(_Handle):

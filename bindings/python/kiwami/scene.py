@@ -9,25 +9,17 @@ import numpy as np
 from . import _native
 from ._library import Handle, check, descriptor, library
 from .arrays import (
-    as_column,
     as_dense_rows,
-    as_float_rows,
     as_index_column,
     as_indices,
     as_positions,
     hit_dtype,
-    ray_dtype,
-    set_input,
 )
 from .device import default_device
 from .errors import InvalidArgumentError, KiwamiError
 from .hits import Hits, hits_for
+from .rays import RayBatch
 
-_CULL = {
-    None: 0,
-    "back": _native.KIWAMI_RAY_CULL_BACK_FACES,
-    "front": _native.KIWAMI_RAY_CULL_FRONT_FACES,
-}
 QUALITIES = {
     "fast": _native.KIWAMI_QUALITY_FAST,
     "balanced": _native.KIWAMI_QUALITY_BALANCED,
@@ -37,74 +29,6 @@ QUALITIES = {
 
 class _Geometry(Handle):
     _release = staticmethod(library.kiwami_geometry_release)
-
-
-class RayBatch:
-    """Rays on their way to the library: records of ray_dtype, or fields that lie apart.
-
-    Holds every array that the library is about to read.
-    """
-
-    def __init__(self, rays, directions, tmin, tmax, time, mask, cull):
-        if cull not in _CULL:
-            raise ValueError(f"cull is {cull!r}, expected None, 'back' or 'front'")
-        if isinstance(rays, np.ndarray) and rays.dtype == ray_dtype:
-            self._take_records(rays, directions)
-        else:
-            self._take_fields(rays, directions, tmin, tmax, time, mask, _CULL[cull])
-
-    def _take_records(self, rays, directions):
-        if directions is not None:
-            raise TypeError("directions are given beside rays that have theirs, expected None")
-        self.shape, self.count = rays.shape, rays.size
-        self.records = rays.reshape(-1)
-        if not self.records.flags.aligned or self.records.strides[0] < ray_dtype.itemsize:
-            self.records = np.ascontiguousarray(self.records)
-
-    def _take_fields(self, rays, directions, tmin, tmax, time, mask, flags):
-        self.records = None
-        if directions is None:
-            rows, shape = as_float_rows(rays, 6, "rays")
-            origins, directions = rows[:, :3], rows[:, 3:]
-        else:
-            origins, first = as_float_rows(rays, 3, "origins")
-            directions, second = as_float_rows(directions, 3, "directions")
-            shape = np.broadcast_shapes(first, second)
-            count = int(np.prod(shape, dtype=np.int64))
-            if origins.shape[0] != count:
-                origins, _ = as_float_rows(
-                    np.broadcast_to(origins.reshape(*first, 3), (*shape, 3)), 3, "origins"
-                )
-            if directions.shape[0] != count:
-                directions, _ = as_float_rows(
-                    np.broadcast_to(directions.reshape(*second, 3), (*shape, 3)), 3, "directions"
-                )
-        self.shape, self.count = shape, origins.shape[0]
-        columns = {
-            "tmin": as_column(tmin, self.count, shape, np.float32, "tmin"),
-            "tmax": as_column(tmax, self.count, shape, np.float32, "tmax"),
-            "time": as_column(time, self.count, shape, np.float32, "time"),
-            "mask": as_column(mask, self.count, shape, np.uint32, "mask"),
-            "flags": as_column(flags, self.count, shape, np.uint32, "flags"),
-        }
-        for axis, name in enumerate("xyz"):
-            columns[f"origin_{name}"] = origins[:, axis]
-            columns[f"direction_{name}"] = directions[:, axis]
-        self.columns = columns
-        self.fields = descriptor(_native.kiwami_ray_fields, library.kiwami_ray_fields_init)
-        for name, column in columns.items():
-            set_input(getattr(self.fields, name), column)
-
-
-def _hit_fields(records):
-    """The fields of an array of hits, as the library fills them."""
-    fields = descriptor(_native.kiwami_hit_fields, library.kiwami_hit_fields_init)
-    names = [name for name, _ in _native.kiwami_hit._fields_]
-    for name in names:
-        field = getattr(fields, name)
-        field.data = records.ctypes.data + getattr(_native.kiwami_hit, name).offset
-        field.stride = records.strides[0] if records.ndim and records.size else 36
-    return fields
 
 
 class Scene(Handle):
@@ -402,6 +326,7 @@ class Scene(Handle):
         time=0.0,
         mask=0xFFFFFFFF,
         cull=None,
+        filter=None,
         out=None,
     ):
         """The closest hit of each ray, as Hits.
@@ -412,30 +337,16 @@ class Scene(Handle):
         tmin, tmax, time, mask
                     one number, or one each
         cull        "back" or "front": triangles seen from there are not met
+        filter      called with a candidate (its ray's number ``ray``, ``hit``, ``depth`` and
+                    ``instance_path``), from any thread; says whether the hit counts: true or
+                    false, or FILTER_ACCEPT_AND_STOP, which ends the search along the ray. Where it
+                    raises, the call raises CallbackError from it
         out         where the hits go: an array of hit_dtype, or earlier Hits
         """
         self._prepare()
-        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull)
+        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull, filter)
         records = hits_for(batch.shape, out)
-        if batch.records is not None:
-            result = library.kiwami_closest_hit(
-                self,
-                batch.records.ctypes.data,
-                batch.records.strides[0],
-                records.ctypes.data,
-                records.itemsize,
-                batch.count,
-                None,
-            )
-        else:
-            result = library.kiwami_closest_hit_fields(
-                self,
-                ctypes.byref(batch.fields),
-                ctypes.byref(_hit_fields(records.reshape(-1))),
-                batch.count,
-                None,
-            )
-        check(result, self._device)
+        batch.trace(self, "closest_hit", records.reshape(-1))
         return Hits(records)
 
     def any(
@@ -448,28 +359,14 @@ class Scene(Handle):
         time=0.0,
         mask=0xFFFFFFFF,
         cull=None,
+        filter=None,
         out=None,
     ):
         """Whether each ray hits anything: an array of bool. Arguments as of closest()."""
         self._prepare()
-        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull)
+        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull, filter)
         occluded = _flags_for(batch.shape, out)
-        if batch.records is not None:
-            result = library.kiwami_any_hit(
-                self,
-                batch.records.ctypes.data,
-                batch.records.strides[0],
-                occluded.ctypes.data,
-                1,
-                batch.count,
-                None,
-            )
-        else:
-            field = _native.kiwami_output_field(occluded.ctypes.data, 1)
-            result = library.kiwami_any_hit_fields(
-                self, ctypes.byref(batch.fields), ctypes.byref(field), batch.count, None
-            )
-        check(result, self._device)
+        batch.trace(self, "any_hit", occluded.reshape(-1))
         return occluded
 
     def multi_hit(
@@ -483,6 +380,7 @@ class Scene(Handle):
         time=0.0,
         mask=0xFFFFFFFF,
         cull=None,
+        filter=None,
     ):
         """The nearest max_hits hits of each ray, or all of them (0), by rising distance.
 
@@ -490,39 +388,9 @@ class Scene(Handle):
         triangle that a ray crosses is one hit. Other arguments as of closest().
         """
         self._prepare()
-        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull)
-        offsets = np.empty(batch.count + 1, np.int64)
-        records = np.empty(batch.count, hit_dtype)
-        while True:
-            result = self._multi_hit(batch, max_hits, records, offsets)
-            if result != _native.KIWAMI_ERROR_CAPACITY:
-                check(result, self._device)
-                return Hits(records[: offsets[-1]]), offsets
-            records = np.empty(offsets[-1], hit_dtype)
-
-    def _multi_hit(self, batch, max_hits, records, offsets):
-        if batch.records is not None:
-            return library.kiwami_multi_hit(
-                self,
-                batch.records.ctypes.data,
-                batch.records.strides[0],
-                batch.count,
-                max_hits,
-                records.ctypes.data,
-                len(records),
-                offsets.ctypes.data,
-                None,
-            )
-        return library.kiwami_multi_hit_fields(
-            self,
-            ctypes.byref(batch.fields),
-            batch.count,
-            max_hits,
-            ctypes.byref(_hit_fields(records)),
-            len(records),
-            offsets.ctypes.data,
-            None,
-        )
+        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull, filter)
+        records, offsets = batch.trace_several(self, max_hits)
+        return Hits(records), offsets
 
     def count(
         self,
@@ -534,27 +402,13 @@ class Scene(Handle):
         time=0.0,
         mask=0xFFFFFFFF,
         cull=None,
+        filter=None,
     ):
         """How many hits each ray has; uint32. Arguments as of closest()."""
         self._prepare()
-        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull)
+        batch = RayBatch(rays, directions, tmin, tmax, time, mask, cull, filter)
         counts = np.empty(batch.shape, np.uint32)
-        if batch.records is not None:
-            result = library.kiwami_count_hits(
-                self,
-                batch.records.ctypes.data,
-                batch.records.strides[0],
-                counts.ctypes.data,
-                4,
-                batch.count,
-                None,
-            )
-        else:
-            field = _native.kiwami_output_field(counts.ctypes.data, 4)
-            result = library.kiwami_count_hits_fields(
-                self, ctypes.byref(batch.fields), ctypes.byref(field), batch.count, None
-            )
-        check(result, self._device)
+        batch.trace(self, "count_hits", counts.reshape(-1))
         return counts
 
     def __repr__(self):

@@ -52,7 +52,7 @@ def test_strided_and_reversed_arrays_give_the_same(ball, random):
 
 
 def test_float_arrays_are_read_where_they_lie(ball, random, monkeypatch):
-    from kiwami import scene as module
+    from kiwami import rays as module
 
     origins, directions = (each.astype(np.float32) for each in rays_at(random, 64))
     seen = {}
