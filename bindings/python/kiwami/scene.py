@@ -13,7 +13,6 @@ from .arrays import (
     as_index_column,
     as_indices,
     as_positions,
-    hit_dtype,
 )
 from .device import default_device
 from .errors import InvalidArgumentError, KiwamiError
