@@ -303,16 +303,14 @@ class SceneInstances::Trees final : public BraidSource {
     if (reference.start.tree == InstanceStart::kAllTrees) {
       // A scene of one tree is opened to the children of its root at once.
       if (view.part_count == 0)
-        return open_node(reference, extent, view.tree, 0, view.tree.root, children);
+        return open_tree(reference, extent, view, 0, view.tree.root, children);
       if (view.tree.root.mask() == 0 && view.part_count == 1) {
-        return open_node(reference, extent, view.parts[0].tree, 1, view.parts[0].tree.root,
-                         children);
+        return open_tree(reference, extent, view, 1, view.parts[0].tree.root, children);
       }
       return open_trees(reference, extent, view, children);
     }
-    const uint32_t tree = reference.start.tree;
-    return open_node(reference, extent, tree == 0 ? view.tree : view.parts[tree - 1].tree, tree,
-                     reference.start.subtree, children);
+    return open_tree(reference, extent, view, reference.start.tree, reference.start.subtree,
+                     children);
   }
 
  private:
@@ -345,6 +343,17 @@ class SceneInstances::Trees final : public BraidSource {
     for (uint32_t i = 0; i < view.part_count; ++i) add(view.parts[i].tree, i + 1);
     share_weight(reference, children, count);
     return count;
+  }
+
+  /// Opens a node of one of the scene's trees, by the number that references have for it: 0 is that
+  /// of the triangles, i + 1 that of part i. Where triangles move, the boxes of nodes are those of
+  /// the middle of their way, and hold them at no other time: their tree stays whole.
+  uint32_t open_tree(const BraidReference& reference, const Extent& extent, const SceneView& view,
+                     uint32_t number, ChildReference subtree,
+                     BraidReference (&children)[kMaxChildren]) const {
+    if (number != 0 && view.parts[number - 1].kind == PartKind::kMovingTriangles) return 0;
+    return open_node(reference, extent, number == 0 ? view.tree : view.parts[number - 1].tree,
+                     number, subtree, children);
   }
 
   uint32_t open_node(const BraidReference& reference, const Extent& extent, const TreeView& tree,
