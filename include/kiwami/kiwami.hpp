@@ -15,11 +15,14 @@
 #define KIWAMI_KIWAMI_HPP
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -157,6 +160,30 @@ class Mesh : public Geometry {
   }
 };
 
+namespace detail {
+
+/// A callable as the progress function of a commit. No exception may cross C: it is kept.
+template <typename Progress>
+struct ProgressReport {
+  Progress& progress;
+  std::exception_ptr thrown;
+
+  static kiwami_progress function() {
+    return [](void* user, double fraction) -> std::int32_t {
+      auto& report = *static_cast<ProgressReport*>(user);
+      if (report.thrown) return 1;
+      try {
+        return report.progress(fraction) ? 1 : 0;
+      } catch (...) {
+        report.thrown = std::current_exception();
+        return 1;
+      }
+    };
+  }
+};
+
+}  // namespace detail
+
 /// The hits of many rays: those of ray i are hits[offsets[i]] to hits[offsets[i + 1] - 1].
 struct MultiHits {
   std::vector<std::uint64_t> offsets;
@@ -187,6 +214,18 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
     check(kiwami_scene_set_parameter(get(), parameter, value));
   }
   void commit() { check(kiwami_scene_commit(get())); }
+  /// The same, and tells progress(double) how far it is: a fraction from 0 to 1, which never falls,
+  /// from any thread, never from two at a time. Where it returns true, the commit ends with
+  /// Error(KIWAMI_ERROR_CANCELLED); what it throws ends the commit and comes out of this call.
+  template <std::predicate<double> Progress>
+  void commit(Progress&& progress) {
+    detail::ProgressReport<std::remove_reference_t<Progress>> report{progress, {}};
+    check(kiwami_scene_set_progress(get(), report.function(), &report));
+    const kiwami_result result = kiwami_scene_commit(get());
+    check(kiwami_scene_set_progress(get(), nullptr, nullptr));
+    if (report.thrown) std::rethrow_exception(report.thrown);
+    check(result);
+  }
 
   /// Saves the committed scene; a file of that name stays whole until all is written.
   void save(const std::string& path) const {

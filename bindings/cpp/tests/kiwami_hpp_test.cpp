@@ -195,6 +195,47 @@ TEST(KiwamiHpp, SpansOfDifferentSizesAreAnError) {
   EXPECT_TRUE(scene.multi_hit(std::span<const kiwami::Ray>{}).hits.empty());
 }
 
+TEST(KiwamiHpp, ProgressIsToldAndMayCancelOrThrow) {
+  const kiwami::Device device;
+  kiwami::Scene scene(device);
+  const kiwami::Triangle triangle{0, 1, 2};
+  scene.attach(kiwami::Mesh(device, kCorners, std::span(&triangle, 1)));
+  std::vector<double> fractions;
+  scene.commit([&](double fraction) {
+    fractions.push_back(fraction);
+    return false;
+  });
+  ASSERT_GE(fractions.size(), 2u);
+  EXPECT_EQ(fractions.front(), 0.0);
+  EXPECT_EQ(fractions.back(), 1.0);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  try {
+    scene.commit([](double) { return true; });
+    FAIL() << "the commit was not cancelled";
+  } catch (const kiwami::Error& error) {
+    EXPECT_EQ(error.result(), KIWAMI_ERROR_CANCELLED);
+  }
+  struct Stop {
+    int why;
+  };
+  int calls = 0;
+  try {
+    scene.commit([&](double) -> bool {
+      ++calls;
+      throw Stop{7};
+    });
+    FAIL() << "nothing was thrown";
+  } catch (const Stop& stop) {
+    EXPECT_EQ(stop.why, 7);
+  }
+  EXPECT_EQ(calls, 1);
+  // The function is gone, and what was committed before stays in use.
+  EXPECT_TRUE(scene.any_hit(ray_at(0.25f, 0.25f)));
+  scene.commit();
+  EXPECT_EQ(calls, 1);
+  note("progress callback");
+}
+
 TEST(KiwamiHpp, ManyThreadsTraceOneScene) {
   const kiwami::Device device;
   kiwami::Scene scene(device);

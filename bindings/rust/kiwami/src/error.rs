@@ -16,6 +16,10 @@ pub enum ErrorKind {
     Callback,
     Validation,
     Internal,
+    Capacity,
+    InvalidFile,
+    Io,
+    Cancelled,
     /// A number that this crate does not know.
     Other,
 }
@@ -28,6 +32,11 @@ pub struct Error {
 }
 
 impl Error {
+    /// One that this crate finds itself.
+    pub(crate) fn new(result: i32, sentence: String) -> Self {
+        Self { result, sentence }
+    }
+
     pub fn kind(&self) -> ErrorKind {
         match self.result {
             sys::KIWAMI_ERROR_INVALID_ARGUMENT => ErrorKind::InvalidArgument,
@@ -38,6 +47,10 @@ impl Error {
             sys::KIWAMI_ERROR_CALLBACK => ErrorKind::Callback,
             sys::KIWAMI_ERROR_VALIDATION => ErrorKind::Validation,
             sys::KIWAMI_ERROR_INTERNAL => ErrorKind::Internal,
+            sys::KIWAMI_ERROR_CAPACITY => ErrorKind::Capacity,
+            sys::KIWAMI_ERROR_INVALID_FILE => ErrorKind::InvalidFile,
+            sys::KIWAMI_ERROR_IO => ErrorKind::Io,
+            sys::KIWAMI_ERROR_CANCELLED => ErrorKind::Cancelled,
             _ => ErrorKind::Other,
         }
     }

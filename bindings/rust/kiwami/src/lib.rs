@@ -19,6 +19,7 @@
 
 mod device;
 mod error;
+mod progress;
 mod ray;
 mod scene;
 

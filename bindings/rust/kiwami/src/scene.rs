@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 use crate::device::Device;
 use crate::error::Error;
+use crate::progress::with_progress;
 use crate::ray::{Hit, Ray};
 use kiwami_sys as sys;
 use std::ffi::CString;
 use std::mem::{size_of, MaybeUninit};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::ptr::{null, null_mut};
 
@@ -115,6 +117,21 @@ impl SceneBuilder {
         self.object.device.check(unsafe { sys::kiwami_scene_commit(self.object.scene) })?;
         Ok(Scene { object: self.object })
     }
+
+    /// The same, and tells `progress` how far it is: a fraction from 0 to 1, which never falls, from
+    /// any thread, never from two at a time. Where it breaks, the commit ends with
+    /// `ErrorKind::Cancelled`; where it panics, with `ErrorKind::Callback` and the message.
+    pub fn commit_with_progress<F>(self, progress: F) -> Result<Scene, Error>
+    where
+        F: FnMut(f64) -> ControlFlow<()> + Send,
+    {
+        let Object { device, scene } = &self.object;
+        // SAFETY: the scene lives, and nothing else can reach it.
+        unsafe {
+            with_progress(*scene, progress, || device.check(sys::kiwami_scene_commit(*scene)))?;
+        }
+        Ok(Scene { object: self.object })
+    }
 }
 
 /// The hits of many rays.
@@ -149,7 +166,7 @@ impl Scene {
 
     /// Saves the scene; a file of that name stays whole until all is written.
     pub fn save(&self, path: &Path) -> Result<(), Error> {
-        let path = c_path(path);
+        let path = c_path(path)?;
         let mut desc = MaybeUninit::<sys::kiwami_save_desc>::uninit();
         // SAFETY: the init function fills the descriptor; path outlives the call.
         self.object.device.check(unsafe {
@@ -172,7 +189,7 @@ impl Scene {
     /// With MAP the file may not be changed or cut while the scene lives. With TRUSTED its bytes
     /// must be those that `save` wrote.
     pub unsafe fn load_with(device: &Device, path: &Path, flags: u32) -> Result<Self, Error> {
-        let path = c_path(path);
+        let path = c_path(path)?;
         let mut desc = MaybeUninit::<sys::kiwami_load_desc>::uninit();
         let mut scene = null_mut();
         device.check({
@@ -286,7 +303,12 @@ impl Scene {
     }
 }
 
-/// A path for C. One with a 0 in it names no file, as the empty one does not.
-fn c_path(path: &Path) -> CString {
-    CString::new(path.to_string_lossy().as_bytes()).unwrap_or_default()
+/// A path for C, which ends at the first 0.
+fn c_path(path: &Path) -> Result<CString, Error> {
+    CString::new(path.to_string_lossy().as_bytes()).map_err(|_| {
+        Error::new(
+            sys::KIWAMI_ERROR_INVALID_ARGUMENT,
+            format!("path is {path:?}, expected one without a 0 in it"),
+        )
+    })
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //! The answers that every binding must give, to the bit.
 use std::io::Write;
+use std::ops::ControlFlow;
 
 use kiwami::{Device, DeviceOptions, ErrorKind, Hit, Isa, Ray, Scene, SceneBuilder};
 
@@ -198,4 +199,57 @@ fn a_scene_is_traced_by_many_threads() {
         }
     });
     assert!(scene.edit().commit().is_ok());
+}
+
+fn one_triangle(device: &Device) -> SceneBuilder {
+    let mut builder = SceneBuilder::new(device).unwrap();
+    builder
+        .add_mesh(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])
+        .unwrap();
+    builder
+}
+
+#[test]
+fn progress_is_told_and_may_cancel_or_panic() {
+    let device = Device::new().unwrap();
+    let mut fractions = Vec::new();
+    let scene = one_triangle(&device)
+        .commit_with_progress(|fraction| {
+            fractions.push(fraction);
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+    assert_eq!((fractions.first(), fractions.last()), (Some(&0.0), Some(&1.0)));
+    assert!(fractions.windows(2).all(|pair| pair[0] <= pair[1]));
+    // The closure is gone: a later commit must not call it.
+    assert!(scene.edit().commit().is_ok());
+
+    let error = one_triangle(&device)
+        .commit_with_progress(|_| ControlFlow::Break(()))
+        .err()
+        .unwrap();
+    assert_eq!(error.kind(), ErrorKind::Cancelled);
+
+    let mut calls = 0;
+    let error = one_triangle(&device)
+        .commit_with_progress(|_| {
+            calls += 1;
+            panic!("no more")
+        })
+        .err()
+        .unwrap();
+    assert_eq!(error.kind(), ErrorKind::Callback);
+    assert_eq!(error.to_string(), "the progress function panicked: no more");
+    assert_eq!(calls, 1);
+    note("progress callback");
+}
+
+#[test]
+fn a_path_with_a_zero_is_an_error() {
+    let device = Device::new().unwrap();
+    let error = Scene::load(&device, std::path::Path::new("a\0b")).err().unwrap();
+    assert_eq!(error.kind(), ErrorKind::InvalidArgument);
+    assert!(error.to_string().contains("a\\0b"), "{error}");
+    let missing = Scene::load(&device, std::path::Path::new("/no/such/file")).err().unwrap();
+    assert_eq!(missing.kind(), ErrorKind::Io);
 }
