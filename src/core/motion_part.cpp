@@ -312,7 +312,17 @@ void MotionTree::fill_bounds(Memory& memory, const Parallel& parallel) {
       Array<unsigned char>(memory, data_.time.segment_count * node_count * sizeof(MotionBounds<N>));
   auto* const bounds = reinterpret_cast<MotionBounds<N>*>(bounds_.data());
   const ChildReference root = tree.view.root;
-  if (root.mask() == 0 || root.is_leaf()) return;
+  if (root.mask() == 0) return;
+  // Also of a leaf at the root. All boxes are in that of all times, which padding widens by a part
+  // of the same numbers.
+  for (int axis = 0; axis < 3; ++axis) {
+    const double centre = tree.view.centre[axis];
+    const double lower = tree_.bounds.lower[axis], upper = tree_.bounds.upper[axis];
+    const double reach = std::max(std::fabs(lower - centre), std::fabs(upper - centre));
+    const double greatest = std::max(std::fabs(lower), std::fabs(upper));
+    tree.view.greatest_bound[axis] = round_up(reach + 0x1p-20 * (greatest + (upper - lower)));
+  }
+  if (root.is_leaf()) return;
   parallel.for_blocks(data_.time.segment_count * node_count, 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) BoundsFiller<N>::clear(bounds[i]);
   });
@@ -324,14 +334,6 @@ void MotionTree::fill_bounds(Memory& memory, const Parallel& parallel) {
     BoundsFiller<N>(tree, data_, tree_.bounds, segment, bounds + segment * node_count)
         .fill_slot(root, slot, node.child[slot]);
   });
-  // All boxes are in that of all times, which padding widens by a part of the same numbers.
-  for (int axis = 0; axis < 3; ++axis) {
-    const double centre = tree.view.centre[axis];
-    const double lower = tree_.bounds.lower[axis], upper = tree_.bounds.upper[axis];
-    const double reach = std::max(std::fabs(lower - centre), std::fabs(upper - centre));
-    const double greatest = std::max(std::fabs(lower), std::fabs(upper));
-    tree.view.greatest_bound[axis] = round_up(reach + 0x1p-20 * (greatest + (upper - lower)));
-  }
 }
 
 template <int N>

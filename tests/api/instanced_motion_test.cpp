@@ -28,13 +28,14 @@ std::vector<float> rising_triangles() {
   return vertices;
 }
 
-Geometry make_moving(const Device& device) {
+/// The first of the triangles.
+Geometry make_moving(const Device& device, uint32_t count = kTriangles) {
   const std::vector<float> vertices = rising_triangles();
   kiwami_moving_mesh_desc desc;
   EXPECT_EQ(kiwami_moving_mesh_desc_init(&desc, sizeof desc), KIWAMI_OK);
   desc.vertices = vertices.data();
   desc.vertex_count = uint64_t{3} * kTriangles;
-  desc.triangle_count = kTriangles;
+  desc.triangle_count = count;
   desc.step_count = 2;
   kiwami_geometry* geometry = nullptr;
   EXPECT_EQ(kiwami_moving_mesh_create(device.get(), &desc, &geometry), KIWAMI_OK) << last_error();
@@ -80,6 +81,17 @@ std::vector<kiwami_ray> rays_from_above() {
 
 class InstancedMotion : public testing::TestWithParam<int> {
  protected:
+  Scene make_scene_of(const Geometry& instances, int mode) const {
+    Scene scene = make_scene(device_);
+    EXPECT_EQ(kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_REBRAID, mode), KIWAMI_OK);
+    EXPECT_EQ(kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_REBRAID_BUDGET, 20),
+              KIWAMI_OK);
+    EXPECT_EQ(kiwami_scene_attach(scene.get(), instances.get(), nullptr), KIWAMI_OK);
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
+    EXPECT_EQ(kiwami_scene_validate(scene.get()), KIWAMI_OK) << last_error();
+    return scene;
+  }
+
   const Device device_ = make_device();
 };
 
@@ -87,15 +99,7 @@ TEST_P(InstancedMotion, IsThatOfTheSceneItself) {
   const Scene child = make_scene(device_, make_moving(device_));
   const std::vector<kiwami_ray> rays = rays_from_above();
   const std::vector<kiwami_hit> expected = closest_hits(child, rays);
-  const Scene scene = make_scene(device_);
-  EXPECT_EQ(kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_REBRAID, GetParam()),
-            KIWAMI_OK);
-  EXPECT_EQ(kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_REBRAID_BUDGET, 20),
-            KIWAMI_OK);
-  const Geometry instances = make_instances(device_, child, 1);
-  ASSERT_EQ(kiwami_scene_attach(scene.get(), instances.get(), nullptr), KIWAMI_OK);
-  ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
-  EXPECT_EQ(kiwami_scene_validate(scene.get()), KIWAMI_OK) << last_error();
+  const Scene scene = make_scene_of(make_instances(device_, child, 1), GetParam());
   const std::vector<kiwami_hit> hits = closest_hits(scene, rays);
   for (size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(expected[i].primitive_id, i % kTriangles);
@@ -108,16 +112,39 @@ TEST_P(InstancedMotion, OverlapsAsWithoutRebraiding) {
   const Scene child = make_scene(device_, make_moving(device_));
   const std::vector<kiwami_ray> rays = rays_from_above();
   const auto hits_of = [&](int mode) {
-    const Scene scene = make_scene(device_);
-    EXPECT_EQ(kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_REBRAID, mode), KIWAMI_OK);
-    EXPECT_EQ(kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_REBRAID_BUDGET, 20),
-              KIWAMI_OK);
-    const Geometry instances = make_instances(device_, child, 3);
-    EXPECT_EQ(kiwami_scene_attach(scene.get(), instances.get(), nullptr), KIWAMI_OK);
-    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
-    return closest_hits(scene, rays);
+    return closest_hits(make_scene_of(make_instances(device_, child, 3), mode), rays);
   };
   EXPECT_TRUE(are_equal(hits_of(GetParam()), hits_of(KIWAMI_REBRAID_OFF)));
+}
+
+/// The root of its tree is a leaf: no node holds its boxes.
+TEST_P(InstancedMotion, OfASingleTriangleBesideOthersThatRest) {
+  Scene child = make_scene(device_, make_moving(device_, 1));
+  std::vector<float> resting;
+  for (uint32_t i = 0; i < 64; ++i) {
+    const float x = static_cast<float>(i % 8) - 20.0f, y = static_cast<float>(i / 8);
+    resting.insert(resting.end(), {x, y, 0, x + 0.9f, y, 0, x, y + 0.9f, 0});
+  }
+  kiwami_triangle_mesh_desc desc;
+  ASSERT_EQ(kiwami_triangle_mesh_desc_init(&desc, sizeof desc), KIWAMI_OK);
+  desc.vertices = resting.data();
+  desc.vertex_count = resting.size() / 3;
+  desc.triangle_count = resting.size() / 9;
+  const Geometry mesh = make_mesh(device_, desc);
+  ASSERT_EQ(kiwami_scene_attach(child.get(), mesh.get(), nullptr), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_commit(child.get()), KIWAMI_OK);
+  std::vector<kiwami_ray> rays;
+  for (const kiwami_ray& ray : rays_from_above()) {
+    if (ray.origin_x < 1.0f && ray.origin_y < 1.0f) rays.push_back(ray);
+  }
+  const Scene scene = make_scene_of(make_instances(device_, child, 3), GetParam());
+  const std::vector<kiwami_hit> expected = closest_hits(child, rays);
+  const std::vector<kiwami_hit> hits = closest_hits(scene, rays);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(expected[i].primitive_id, 0u);
+    ASSERT_EQ(hits[i].primitive_id, 0u) << "time " << rays[i].time;
+    ASSERT_EQ(hits[i].t, expected[i].t) << "time " << rays[i].time;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, InstancedMotion,
