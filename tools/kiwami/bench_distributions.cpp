@@ -15,14 +15,6 @@
 namespace kiwami::tools {
 namespace {
 
-void check(kiwami_result result) {
-  if (result == KIWAMI_OK) return;
-  std::string sentence(kiwami_last_error(nullptr, nullptr, 0), '\0');
-  kiwami_last_error(nullptr, sentence.data(), sentence.size());
-  sentence.pop_back();
-  throw LibraryError(result, sentence);
-}
-
 /// One way to draw numbers: it is built again and again, and asked for draws.
 class Drawer {
  public:
@@ -43,20 +35,20 @@ class LibraryDrawer : public Drawer {
   void build() override {
     kiwami_distribution_release(distribution_);
     kiwami_distribution_desc desc;
-    check(kiwami_distribution_desc_init(&desc, sizeof desc));
+    throw_on_error(kiwami_distribution_desc_init(&desc, sizeof desc));
     desc.method = method_;
     desc.weights = weights_.data();
     desc.weight_count = weights_.size();
-    check(kiwami_distribution_create(device_.get(), &desc, &distribution_));
+    throw_on_error(kiwami_distribution_create(device_.get(), &desc, &distribution_));
   }
   void draw(const std::vector<double>& randoms, std::vector<kiwami_draw>& draws) const override {
-    check(kiwami_distribution_sample(distribution_, randoms.data(), 0, draws.data(), 0,
-                                     randoms.size()));
+    throw_on_error(kiwami_distribution_sample(distribution_, randoms.data(), 0, draws.data(), 0,
+                                              randoms.size()));
   }
   kiwami_distribution_info info() const override {
     kiwami_distribution_info info;
     info.struct_size = sizeof info;
-    check(kiwami_distribution_get_info(distribution_, &info));
+    throw_on_error(kiwami_distribution_get_info(distribution_, &info));
     return info;
   }
 

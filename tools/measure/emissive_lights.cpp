@@ -9,14 +9,6 @@
 namespace kiwami::tools {
 namespace {
 
-void check(kiwami_result result) {
-  if (result == KIWAMI_OK) return;
-  std::string sentence(kiwami_last_error(nullptr, nullptr, 0), '\0');
-  kiwami_last_error(nullptr, sentence.data(), sentence.size());
-  sentence.pop_back();
-  throw LibraryError(result, sentence);
-}
-
 Vec3 vertex_of(const Mesh& mesh, uint32_t index) {
   const float* vertex = &mesh.vertices[size_t{3} * index];
   return {vertex[0], vertex[1], vertex[2]};
@@ -98,35 +90,35 @@ LightSet::LightSet(const Device& device, const std::vector<EmissiveTriangle>& tr
     }
   }
   kiwami_light_tree_desc desc;
-  check(kiwami_light_tree_desc_init(&desc, sizeof desc));
+  throw_on_error(kiwami_light_tree_desc_init(&desc, sizeof desc));
   desc.width = width;
   desc.builder = builder;
   desc.flags = with_roulette ? KIWAMI_LIGHT_TREE_WITH_ROULETTE : 0;
-  check(kiwami_light_tree_create(device.get(), &desc, &tree_));
+  throw_on_error(kiwami_light_tree_create(device.get(), &desc, &tree_));
   kiwami_light_mesh_desc mesh;
-  check(kiwami_light_mesh_desc_init(&mesh, sizeof mesh));
+  throw_on_error(kiwami_light_mesh_desc_init(&mesh, sizeof mesh));
   mesh.flags = KIWAMI_LIGHT_TWO_SIDED;
   mesh.vertices = vertices.data();
   mesh.vertex_count = vertices.size() / 3;
   mesh.triangle_count = triangles.size();
   if (!triangles.empty()) mesh.radiances = &triangles[0].radiance;
   mesh.radiance_stride = sizeof(EmissiveTriangle);
-  check(kiwami_light_tree_add_mesh(tree_, &mesh, nullptr));
-  check(kiwami_light_tree_commit(tree_));
+  throw_on_error(kiwami_light_tree_add_mesh(tree_, &mesh, nullptr));
+  throw_on_error(kiwami_light_tree_commit(tree_));
   info_.struct_size = sizeof info_;
-  check(kiwami_light_tree_get_info(tree_, &info_));
+  throw_on_error(kiwami_light_tree_get_info(tree_, &info_));
 }
 
 void LightSet::sample(const LightMethodName& method,
                       std::span<const kiwami_light_receiver> receivers,
                       std::span<kiwami_light_choice> choices) const {
   kiwami_light_query query;
-  check(kiwami_light_query_init(&query, sizeof query));
+  throw_on_error(kiwami_light_query_init(&query, sizeof query));
   query.method = method.method;
   query.max_choices = method.max_choices;
   query.lobe = method.lobe;
   query.order = method.order;
-  check(
+  throw_on_error(
       kiwami_light_sample(tree_, receivers.data(), 0, choices.data(), 0, receivers.size(), &query));
 }
 

@@ -13,16 +13,6 @@ namespace {
 constexpr uint32_t kIsas[] = {KIWAMI_ISA_SCALAR, KIWAMI_ISA_SSE, KIWAMI_ISA_AVX2,
                               KIWAMI_ISA_AVX512};
 
-void check(kiwami_result result, const kiwami_device* device) {
-  if (result == KIWAMI_OK) return;
-  std::string sentence(kiwami_last_error(device, nullptr, 0), '\0');
-  kiwami_last_error(device, sentence.data(), sentence.size());
-  while (!sentence.empty() && (sentence.back() == '\0' || sentence.back() == '.')) {
-    sentence.pop_back();
-  }
-  throw LibraryError(result, sentence.empty() ? kiwami_result_name(result) : sentence);
-}
-
 constexpr struct {
   const char* name;
   uint32_t number;
@@ -83,14 +73,14 @@ std::optional<T> parse_whole(const std::string& text) {
 
 kiwami_query calling_thread_query() {
   kiwami_query query;
-  check(kiwami_query_init(&query, sizeof query), nullptr);
+  throw_on_error(kiwami_query_init(&query, sizeof query), nullptr);
   query.flags = KIWAMI_QUERY_CALLING_THREAD;
   return query;
 }
 
 kiwami_triangle_mesh_desc desc_of(const Mesh& mesh) {
   kiwami_triangle_mesh_desc desc;
-  check(kiwami_triangle_mesh_desc_init(&desc, sizeof desc), nullptr);
+  throw_on_error(kiwami_triangle_mesh_desc_init(&desc, sizeof desc), nullptr);
   desc.flags = KIWAMI_MESH_SHARE_BUFFERS;
   desc.vertices = mesh.vertices.data();
   desc.vertex_count = mesh.vertex_count();
@@ -102,12 +92,12 @@ kiwami_triangle_mesh_desc desc_of(const Mesh& mesh) {
 kiwami_scene_info info_of(const kiwami_scene* scene) {
   kiwami_scene_info info{};
   info.struct_size = sizeof info;
-  check(kiwami_scene_get_info(scene, &info), nullptr);
+  throw_on_error(kiwami_scene_get_info(scene, &info), nullptr);
   return info;
 }
 
 kiwami_scene_info commit(kiwami_scene* scene) {
-  check(kiwami_scene_commit(scene), nullptr);
+  throw_on_error(kiwami_scene_commit(scene), nullptr);
   return info_of(scene);
 }
 
@@ -151,18 +141,20 @@ void set_leaf_mask(kiwami_device* device, kiwami_geometry* geometry, const Mesh&
   const std::vector<unsigned char> map = leaf_map(level);
   const std::vector<uint32_t> indices(mesh.triangle_count(), 0);
   kiwami_opacity_desc opacity;
-  check(kiwami_opacity_desc_init(&opacity, sizeof opacity), device);
+  throw_on_error(kiwami_opacity_desc_init(&opacity, sizeof opacity), device);
   opacity.level = level;
   opacity.maps = map.data();
   opacity.map_count = 1;
   opacity.indices = indices.data();
-  check(kiwami_triangle_mesh_set_opacity(geometry, &opacity), device);
+  throw_on_error(kiwami_triangle_mesh_set_opacity(geometry, &opacity), device);
 }
 
 /// Holds the reference to a scene's tree.
 class Tree {
  public:
-  explicit Tree(const kiwami_scene* scene) { check(kiwami_scene_get_bvh(scene, &bvh_), nullptr); }
+  explicit Tree(const kiwami_scene* scene) {
+    throw_on_error(kiwami_scene_get_bvh(scene, &bvh_), nullptr);
+  }
   ~Tree() { kiwami_bvh_release(bvh_); }
   Tree(const Tree&) = delete;
   Tree& operator=(const Tree&) = delete;
@@ -174,16 +166,26 @@ class Tree {
 
 }  // namespace
 
+void throw_on_error(kiwami_result result, const kiwami_device* device) {
+  if (result == KIWAMI_OK) return;
+  std::string sentence(kiwami_last_error(device, nullptr, 0), '\0');
+  kiwami_last_error(device, sentence.data(), sentence.size());
+  while (!sentence.empty() && (sentence.back() == '\0' || sentence.back() == '.')) {
+    sentence.pop_back();
+  }
+  throw LibraryError(result, sentence.empty() ? kiwami_result_name(result) : sentence);
+}
+
 Device::Device(uint32_t isa, uint32_t thread_count) {
   kiwami_device_desc desc;
-  check(kiwami_device_desc_init(&desc, sizeof desc), nullptr);
+  throw_on_error(kiwami_device_desc_init(&desc, sizeof desc), nullptr);
   desc.isa = isa;
   desc.thread_count = thread_count;
-  check(kiwami_device_create(&desc, &device_), nullptr);
+  throw_on_error(kiwami_device_create(&desc, &device_), nullptr);
   info_.struct_size = sizeof info_;
   const kiwami_result result = kiwami_device_get_info(device_, &info_);
   if (result != KIWAMI_OK) kiwami_device_release(device_);
-  check(result, nullptr);
+  throw_on_error(result, nullptr);
 }
 
 BuiltScene::BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options) {
@@ -201,10 +203,10 @@ BuiltScene::BuiltScene(const Device& device, const SceneFile& file, const BuildO
 
 BuiltScene::BuiltScene(const Device& device, const std::string& path, uint32_t load_flags) {
   kiwami_load_desc desc;
-  check(kiwami_load_desc_init(&desc, sizeof desc), device.get());
+  throw_on_error(kiwami_load_desc_init(&desc, sizeof desc), device.get());
   desc.path = path.c_str();
   desc.flags = load_flags;
-  check(kiwami_scene_load(device.get(), &desc, &scene_), device.get());
+  throw_on_error(kiwami_scene_load(device.get(), &desc, &scene_), device.get());
   try {
     info_ = info_of(scene_);
   } catch (...) {
@@ -215,10 +217,10 @@ BuiltScene::BuiltScene(const Device& device, const std::string& path, uint32_t l
 
 uint64_t BuiltScene::save(const std::string& path) const {
   kiwami_save_desc desc;
-  check(kiwami_save_desc_init(&desc, sizeof desc), nullptr);
+  throw_on_error(kiwami_save_desc_init(&desc, sizeof desc), nullptr);
   desc.path = path.c_str();
   uint64_t bytes = 0;
-  check(kiwami_scene_save(scene_, &desc, &bytes), nullptr);
+  throw_on_error(kiwami_scene_save(scene_, &desc, &bytes), nullptr);
   return bytes;
 }
 
@@ -238,17 +240,17 @@ void BuiltScene::attach(kiwami_device* device, kiwami_scene* scene, const Mesh& 
                         uint32_t leaf_mask_level) {
   const kiwami_triangle_mesh_desc desc = desc_of(mesh);
   kiwami_geometry* geometry = nullptr;
-  check(kiwami_triangle_mesh_create(device, &desc, &geometry), device);
+  throw_on_error(kiwami_triangle_mesh_create(device, &desc, &geometry), device);
   geometries_.push_back(geometry);
   if (leaf_mask_level != 0) set_leaf_mask(device, geometry, mesh, leaf_mask_level);
-  check(kiwami_scene_attach(scene, geometry, nullptr), device);
+  throw_on_error(kiwami_scene_attach(scene, geometry, nullptr), device);
 }
 
 void BuiltScene::refit() {
   for (kiwami_geometry* geometry : geometries_) {
-    check(kiwami_triangle_mesh_update_vertices(geometry, nullptr, 0, 0), nullptr);
+    throw_on_error(kiwami_triangle_mesh_update_vertices(geometry, nullptr, 0, 0), nullptr);
   }
-  check(kiwami_scene_refit(scene_), nullptr);
+  throw_on_error(kiwami_scene_refit(scene_), nullptr);
   info_ = info_of(scene_);
 }
 
@@ -263,7 +265,7 @@ void BuiltScene::build_instances(kiwami_device* device, const SceneFile& file,
   }
   scene_ = make_scene(device, options);
   kiwami_instances_desc desc;
-  check(kiwami_instances_desc_init(&desc, sizeof desc), device);
+  throw_on_error(kiwami_instances_desc_init(&desc, sizeof desc), device);
   desc.scenes = shown_.data();
   desc.scene_count = shown_.size();
   desc.scene_indices = &instances_[0].mesh;
@@ -271,9 +273,9 @@ void BuiltScene::build_instances(kiwami_device* device, const SceneFile& file,
   desc.scene_index_stride = desc.transform_stride = sizeof(Instance);
   desc.count = instances_.size();
   kiwami_geometry* geometry = nullptr;
-  check(kiwami_instances_create(device, &desc, &geometry), device);
+  throw_on_error(kiwami_instances_create(device, &desc, &geometry), device);
   geometries_.push_back(geometry);
-  check(kiwami_scene_attach(scene_, geometry, nullptr), device);
+  throw_on_error(kiwami_scene_attach(scene_, geometry, nullptr), device);
   info_ = commit(scene_);
   add_costs(shown, info_);
   info_.triangle_count = file.triangle_count();
@@ -283,22 +285,23 @@ void BuiltScene::build_instances(kiwami_device* device, const SceneFile& file,
 }
 
 void BuiltScene::commit_moved(size_t mesh) {
-  check(kiwami_triangle_mesh_update_vertices(geometries_[mesh], nullptr, 0, 0), nullptr);
+  throw_on_error(kiwami_triangle_mesh_update_vertices(geometries_[mesh], nullptr, 0, 0), nullptr);
   info_ = commit(scene_);
 }
 
 kiwami_scene* BuiltScene::make_scene(kiwami_device* device, const BuildOptions& options) {
   kiwami_scene* scene = nullptr;
-  check(kiwami_scene_create(device, &scene), device);
+  throw_on_error(kiwami_scene_create(device, &scene), device);
   try {
     const auto set = [&](uint32_t parameter, double value) {
-      check(kiwami_scene_set_parameter(scene, parameter, value), device);
+      throw_on_error(kiwami_scene_set_parameter(scene, parameter, value), device);
     };
     set(KIWAMI_PARAMETER_BVH_WIDTH, options.bvh_width);
     set(KIWAMI_PARAMETER_MERGE_LEAVES, options.merge_leaves ? 1.0 : 0.0);
     set(KIWAMI_PARAMETER_BUILDER, options.builder);
-    check(kiwami_scene_set_optimizers(scene, options.optimizers.data(), options.optimizers.size()),
-          device);
+    throw_on_error(
+        kiwami_scene_set_optimizers(scene, options.optimizers.data(), options.optimizers.size()),
+        device);
     set(KIWAMI_PARAMETER_CONTRACTION, options.contraction);
     set(KIWAMI_PARAMETER_LAYOUT, options.layout);
     for (const Parameter& parameter : options.parameters) {
@@ -315,7 +318,8 @@ kiwami_scene* BuiltScene::make_scene(kiwami_device* device, const BuildOptions& 
 
 void BuiltScene::own_closest_hits(std::span<const kiwami_ray> rays,
                                   std::span<kiwami_hit> hits) const {
-  check(kiwami_closest_hit(scene_, rays.data(), 0, hits.data(), 0, rays.size(), nullptr), nullptr);
+  throw_on_error(kiwami_closest_hit(scene_, rays.data(), 0, hits.data(), 0, rays.size(), nullptr),
+                 nullptr);
 }
 
 void BuiltScene::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const {
@@ -325,16 +329,18 @@ void BuiltScene::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami
 }
 
 void BuiltScene::any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const {
-  check(kiwami_any_hit(scene_, rays.data(), 0, occluded.data(), 0, rays.size(), nullptr), nullptr);
+  throw_on_error(kiwami_any_hit(scene_, rays.data(), 0, occluded.data(), 0, rays.size(), nullptr),
+                 nullptr);
 }
 
 void BuiltScene::filtered_hits(std::span<const kiwami_ray> rays, kiwami_filter_function filter,
                                void* user, std::span<kiwami_hit> hits) const {
   kiwami_query query;
-  check(kiwami_query_init(&query, sizeof query), nullptr);
+  throw_on_error(kiwami_query_init(&query, sizeof query), nullptr);
   query.filter = filter;
   query.filter_user = user;
-  check(kiwami_closest_hit(scene_, rays.data(), 0, hits.data(), 0, rays.size(), &query), nullptr);
+  throw_on_error(kiwami_closest_hit(scene_, rays.data(), 0, hits.data(), 0, rays.size(), &query),
+                 nullptr);
 }
 
 uint64_t BuiltScene::multi_hits(std::span<const kiwami_ray> rays, uint32_t max_hits,
@@ -342,7 +348,7 @@ uint64_t BuiltScene::multi_hits(std::span<const kiwami_ray> rays, uint32_t max_h
   kiwami_hit* const target = hits.empty() ? nullptr : hits.data();
   const kiwami_result result = kiwami_multi_hit(scene_, rays.data(), 0, rays.size(), max_hits,
                                                 target, hits.size(), offsets.data(), nullptr);
-  if (result != KIWAMI_ERROR_CAPACITY) check(result, nullptr);
+  if (result != KIWAMI_ERROR_CAPACITY) throw_on_error(result, nullptr);
   return offsets.back();
 }
 
@@ -350,7 +356,7 @@ void BuiltScene::closest_hits_singly(std::span<const kiwami_ray> rays,
                                      std::span<kiwami_hit> hits) const {
   const kiwami_query query = calling_thread_query();
   for (size_t i = 0; i < rays.size(); ++i) {
-    check(kiwami_closest_hit(scene_, &rays[i], 0, &hits[i], 0, 1, &query), nullptr);
+    throw_on_error(kiwami_closest_hit(scene_, &rays[i], 0, &hits[i], 0, 1, &query), nullptr);
   }
 }
 
@@ -358,7 +364,7 @@ void BuiltScene::any_hits_singly(std::span<const kiwami_ray> rays,
                                  std::span<uint8_t> occluded) const {
   const kiwami_query query = calling_thread_query();
   for (size_t i = 0; i < rays.size(); ++i) {
-    check(kiwami_any_hit(scene_, &rays[i], 0, &occluded[i], 0, 1, &query), nullptr);
+    throw_on_error(kiwami_any_hit(scene_, &rays[i], 0, &occluded[i], 0, 1, &query), nullptr);
   }
 }
 
@@ -371,11 +377,12 @@ MeasuredTree BuiltScene::measured_tree(uint32_t flags) const {
   const Tree tree(scene_);
   kiwami_bvh_info info{};
   info.struct_size = sizeof info;
-  check(kiwami_bvh_get_info(tree.get(), &info), nullptr);
+  throw_on_error(kiwami_bvh_get_info(tree.get(), &info), nullptr);
   MeasuredTree measured{};
   measured.nodes.resize(info.node_count);
   measured.measures.resize(info.node_count);
-  check(kiwami_bvh_get_nodes(tree.get(), 0, info.node_count, measured.nodes.data(), 0), nullptr);
+  throw_on_error(kiwami_bvh_get_nodes(tree.get(), 0, info.node_count, measured.nodes.data(), 0),
+                 nullptr);
   measured.total = measure(tree.get(), flags, measured.measures.data());
   return measured;
 }
@@ -383,23 +390,24 @@ MeasuredTree BuiltScene::measured_tree(uint32_t flags) const {
 kiwami_bvh_measures BuiltScene::measure(const kiwami_bvh* bvh, uint32_t flags,
                                         kiwami_bvh_node_measures* nodes) const {
   kiwami_bvh_measure_desc desc;
-  check(kiwami_bvh_measure_desc_init(&desc, sizeof desc), nullptr);
+  throw_on_error(kiwami_bvh_measure_desc_init(&desc, sizeof desc), nullptr);
   desc.flags = flags;
   desc.node_cost = node_cost_;
   desc.leaf_cost = leaf_cost_;
   kiwami_bvh_measures measures{};
   measures.struct_size = sizeof measures;
-  check(kiwami_bvh_measure(bvh, &desc, &measures, nodes, 0), nullptr);
+  throw_on_error(kiwami_bvh_measure(bvh, &desc, &measures, nodes, 0), nullptr);
   return measures;
 }
 
 kiwami_visits BuiltScene::visits(std::span<const kiwami_ray> rays, bool any_hit) const {
   kiwami_visits visits{};
   visits.struct_size = sizeof visits;
-  check(kiwami_scene_count_visits(scene_, rays.data(), 0, rays.size(),
-                                  any_hit ? KIWAMI_COUNT_ANY_HIT : KIWAMI_COUNT_CLOSEST_HIT,
-                                  &visits, nullptr, 0),
-        nullptr);
+  throw_on_error(
+      kiwami_scene_count_visits(scene_, rays.data(), 0, rays.size(),
+                                any_hit ? KIWAMI_COUNT_ANY_HIT : KIWAMI_COUNT_CLOSEST_HIT, &visits,
+                                nullptr, 0),
+      nullptr);
   return visits;
 }
 
@@ -430,9 +438,9 @@ BuildOptions build_options_of(uint32_t quality) {
   BuildOptions options;
   size_t count = 0;
   options.optimizers.resize(KIWAMI_MAX_OPTIMIZERS);
-  check(kiwami_quality_methods(quality, &options.builder, options.optimizers.data(), &count,
-                               &options.contraction),
-        nullptr);
+  throw_on_error(kiwami_quality_methods(quality, &options.builder, options.optimizers.data(),
+                                        &count, &options.contraction),
+                 nullptr);
   options.optimizers.resize(count);
   return options;
 }
@@ -481,11 +489,11 @@ Parameter parse_parameter(const std::string& text) {
 
 kiwami_file_info file_info_of(const Device& device, const std::string& path) {
   kiwami_load_desc desc;
-  check(kiwami_load_desc_init(&desc, sizeof desc), device.get());
+  throw_on_error(kiwami_load_desc_init(&desc, sizeof desc), device.get());
   desc.path = path.c_str();
   kiwami_file_info info{};
   info.struct_size = sizeof info;
-  check(kiwami_file_get_info(device.get(), &desc, &info), device.get());
+  throw_on_error(kiwami_file_get_info(device.get(), &desc, &info), device.get());
   return info;
 }
 

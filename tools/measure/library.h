@@ -24,6 +24,10 @@ class LibraryError : public std::runtime_error {
   kiwami_result result_;
 };
 
+/// Throws LibraryError with the library's sentence (of this device's last error, or of the thread's)
+/// unless result is KIWAMI_OK.
+void throw_on_error(kiwami_result result, const kiwami_device* device = nullptr);
+
 /// Owns a device.
 class Device {
  public:
