@@ -261,6 +261,19 @@ TEST(Bench, MeasuresFiltersAndMicromaps) {
   }
 }
 
+TEST(Bench, MakesATableOfShapes) {
+  const Json rows = bench_rows({"--shapes", "spheres,discs,hair,grains", "--shape-count", "4000",
+                                "--rays", "primary,ao", "--clock", "processor", "--threads", "1"});
+  ASSERT_EQ(rows.size(), 8u);
+  for (const Json& row : rows) {
+    expect_positive(row, {"shapes", "hit_part", "mrays"});
+    if (row.contains("embree_mrays")) {
+      EXPECT_LT(row.at("embree_disagreements"), 20) << row;
+    }
+  }
+  EXPECT_NE(bench({"--shapes", "cubes"}).exit_code, 0);
+}
+
 TEST(Bench, TheCameraDecidesThePrimaryRays) {
   const auto hash = [](const std::vector<std::string>& view) {
     std::vector<std::string> arguments = {"terrain:20", "--rays", "primary", "--threads", "1",

@@ -3,16 +3,14 @@
 #include <charconv>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "kiwami/bench.h"
-#include "kiwami/bench_change.h"
-#include "kiwami/bench_distributions.h"
-#include "kiwami/bench_lights.h"
-#include "kiwami/bench_pipelines.h"
+#include "kiwami/bench_options.h"
 #include "kiwami/bench_queries.h"
 #include "kiwami/bench_report.h"
-#include "kiwami/bench_structures.h"
+#include "kiwami/bench_tables.h"
 #include "kiwami/commands.h"
 #include "kiwami/image.h"
 #include "kiwami/known_scenes.h"
@@ -21,68 +19,21 @@
 #include "measure/bench_rays.h"
 #include "measure/emissive_lights.h"
 #include "scene/procedural.h"
+#include "scene/shape_clouds.h"
 
 namespace kiwami::tools {
 namespace {
 
-constexpr int kWrongAnswer = 1;
 constexpr uint32_t kMostThreads = 1024;
 constexpr char kAllRays[] = "primary,bounce,bounce_shuffled,ao,shadow,random";
 constexpr char kPipelineRays[] = "bounce_shuffled,ao";
 
-struct BenchOptions {
-  std::vector<std::string> scenes;
-  std::string list;
-  std::string scenes_folder = ".";
-  std::string peer = *embree_version() != '\0' ? "embree" : "none";
-  bool robust = false;
-  std::string embree_quality = "default";
-  std::string rays;  ///< "": kAllRays, or kPipelineRays in a table of pipelines
-  std::string threads = std::thread::hardware_concurrency() > 1 ? "1,2" : "1";
-  std::string apis = "single,batch";
-  std::string isas = "auto";
-  uint32_t bvh_width = 0;
-  bool instanced = false;
-  PipelineOptions pipeline;
-  std::string pipelines;
-  std::string structures;
-  bool change = false;
-  bool distributions = false;
-  std::string queries;
-  uint32_t max_hits = 8;
-  uint32_t edit = 0;
-  LightBenchOptions lights;
-  uint32_t rounds = 5;
-  uint64_t ray_count = 1u << 20;
-  std::string clock = "wall";
-  std::vector<std::string> parameters;
-  ViewOptions view;
-  std::string json;
-};
-
-/// The words between the commas; `option` is named when one is empty or comes twice.
-std::vector<std::string> split(const std::string& option, const std::string& text) {
-  std::vector<std::string> words = split_words(option, text);
-  for (const std::string& word : words) {
-    if (std::count(words.begin(), words.end(), word) == 1) continue;
-    throw UsageError(format("%s is '%s', expected different words between commas", option.c_str(),
-                            text.c_str()));
-  }
-  return words;
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 std::vector<std::string> parse_rays(const std::string& text) {
   const std::vector<std::string>& known = bench_ray_names();
-  std::vector<std::string> rays = split("--rays", text);
+  std::vector<std::string> rays = split_different_words("--rays", text);
   for (const std::string& name : rays) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw UsageError("--rays has '" + name + "', expected some of " + joined(known));
+      throw UsageError("--rays has '" + name + "', expected some of " + joined_words(known));
     }
   }
   return rays;
@@ -90,7 +41,7 @@ std::vector<std::string> parse_rays(const std::string& text) {
 
 std::vector<uint32_t> parse_threads(const std::string& text) {
   std::vector<uint32_t> threads;
-  for (const std::string& word : split("--threads", text)) {
+  for (const std::string& word : split_different_words("--threads", text)) {
     uint32_t number = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (error != std::errc() || end != word.data() + word.size() || number < 1 ||
@@ -105,7 +56,7 @@ std::vector<uint32_t> parse_threads(const std::string& text) {
 
 std::vector<BenchApi> parse_apis(const std::string& text) {
   std::vector<BenchApi> apis;
-  for (const std::string& word : split("--api", text)) {
+  for (const std::string& word : split_different_words("--api", text)) {
     if (word != "single" && word != "batch") {
       throw UsageError("--api has '" + word + "', expected single, batch or both");
     }
@@ -125,7 +76,7 @@ BenchSettings make_settings(const BenchOptions& options) {
   settings.rays = parse_rays(options.rays.empty() ? usual_rays : options.rays);
   settings.threads = parse_threads(options.threads);
   settings.apis = parse_apis(options.apis);
-  for (const std::string& isa : split("--isa", options.isas)) {
+  for (const std::string& isa : split_different_words("--isa", options.isas)) {
     settings.isas.push_back(isa_of_name(isa));
   }
   settings.instanced = options.instanced;
@@ -166,148 +117,17 @@ std::vector<std::string> choose_scenes(const BenchOptions& options) {
   return scenes;
 }
 
-/// The table of pipelines.
-int run_pipeline_table(const BenchOptions& options, const BenchSettings& settings,
-                       const std::vector<std::string>& scenes) {
-  const std::vector<BuildOptions> pipelines =
-      choose_pipelines(split("--pipelines", options.pipelines), settings.build);
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  bool all_right = true;
-  for (const std::string& scene : scenes) {
-    bool is_first = true;
-    run_pipelines(scene, pipelines, settings, [&](const PipelineRow& row) {
-      print_row(row, is_first);
-      is_first = false;
-      rows.push_back(to_json(row));
-      all_right = all_right && row.wrong.empty();
-    });
-    if (!options.json.empty()) write_file(options.json, rows.dump(1) + "\n");
-  }
-  return all_right ? 0 : kWrongAnswer;
-}
-
-/// The table of textbook structures.
-int run_structure_table(const BenchOptions& options, const BenchSettings& settings,
-                        const std::vector<std::string>& scenes) {
-  const std::vector<std::string> names = split("--structures", options.structures);
-  check_structures(names);
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  bool all_right = true;
-  for (const std::string& scene : scenes) {
-    const std::vector<StructureRow> rows = run_structures(scene, names, settings);
-    print_table(rows);
-    for (const StructureRow& row : rows) {
-      for (const StructureTrace& trace : row.traces) json.push_back(to_json(row, trace));
-      all_right = all_right && row.wrong.empty();
-    }
-    if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
-  }
-  return all_right ? 0 : kWrongAnswer;
-}
-
-/// Refits in place of rays.
-int run_change_table(const BenchOptions& options, const BenchSettings& settings,
-                     const std::vector<std::string>& scenes) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  bool all_right = true;
-  for (const std::string& scene : scenes) {
-    for (const ChangeRow& row : run_change(scene, settings)) {
-      print_row(row, peer_name(settings));
-      json.push_back(to_json(row, peer_name(settings)));
-      all_right = all_right && row.wrong.empty();
-    }
-    if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
-  }
-  return all_right ? 0 : kWrongAnswer;
-}
-
-/// The table of queries beyond closest and any hit.
-int run_query_table(const BenchOptions& options, const BenchSettings& settings,
-                    const std::vector<std::string>& scenes) {
-  const std::vector<std::string> names = split("--queries", options.queries);
-  for (const std::string& name : names) {
-    if (std::count(query_names().begin(), query_names().end(), name) == 0) {
-      throw UsageError("--queries has '" + name + "', expected some of " + joined(query_names()));
-    }
-  }
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  bool all_right = true;
-  for (const std::string& scene : scenes) {
-    bool is_first = true;
-    run_queries(scene, names, options.max_hits, settings, [&](const QueryRow& row) {
-      print_row(row, is_first);
-      is_first = false;
-      rows.push_back(to_json(row));
-      all_right = all_right && row.wrong.empty();
-    });
-    if (!options.json.empty()) write_file(options.json, rows.dump(1) + "\n");
-  }
-  return all_right ? 0 : kWrongAnswer;
-}
-
-/// Commits of scenes of many objects in place of rays.
-int run_edit_table(const BenchOptions& options, const BenchSettings& settings,
-                   const std::vector<std::string>& scenes) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const std::string& scene : scenes) {
-    for (const EditRow& row : run_edit(scene, options.edit, settings)) {
-      print_row(row);
-      json.push_back(to_json(row));
-    }
-    if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
-  }
-  return 0;
-}
-
-/// The table of ways to choose among many lights.
-int run_light_table(const BenchOptions& options, const BenchSettings& settings,
-                    const std::vector<std::string>& scenes) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const std::string& scene : scenes) {
-    bool is_first = true;
-    run_lights(scene, options.lights, settings, [&](const LightRow& row) {
-      print_row(row, is_first);
-      is_first = false;
-      rows.push_back(to_json(row));
-    });
-    if (!options.json.empty()) write_file(options.json, rows.dump(1) + "\n");
-  }
-  return 0;
-}
-
-/// The table of ways to draw triangles by their areas.
-int run_distribution_table(const BenchOptions& options, const BenchSettings& settings,
-                           const std::vector<std::string>& scenes) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  bool all_right = true;
-  for (const std::string& scene : scenes) {
-    const std::vector<DistributionRow> rows = run_distributions(scene, settings);
-    print_table(rows);
-    for (const DistributionRow& row : rows) {
-      json.push_back(to_json(row));
-      all_right = all_right && row.wrong.empty();
-    }
-    if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
-  }
-  return all_right ? 0 : kWrongAnswer;
-}
-
 int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
+  if (!options.json.empty()) check_writable("--json", options.json);
+  if (!options.shapes.empty()) return run_shape_table(options, settings);
   const std::vector<std::string> scenes = choose_scenes(options);
   if (options.instanced &&
       (options.peer == "binary" || !options.pipelines.empty() || !options.structures.empty())) {
     throw UsageError(
         "--instanced goes with --vs embree or none, and with neither --pipelines nor --structures");
   }
-  if (!options.json.empty()) check_writable("--json", options.json);
-  if (!options.pipelines.empty()) return run_pipeline_table(options, settings, scenes);
-  if (options.edit != 0) return run_edit_table(options, settings, scenes);
-  if (options.change) return run_change_table(options, settings, scenes);
-  if (!options.structures.empty()) return run_structure_table(options, settings, scenes);
-  if (!options.queries.empty()) return run_query_table(options, settings, scenes);
-  if (options.distributions) return run_distribution_table(options, settings, scenes);
-  if (options.lights.is_asked) return run_light_table(options, settings, scenes);
+  if (const std::optional<int> exit_code = run_table(options, settings, scenes)) return *exit_code;
   const std::string peer = peer_name(settings);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   RatioSummary summary;
@@ -343,7 +163,7 @@ int run(const BenchOptions& options) {
 CLI::Validator one_of(const std::vector<std::string>& words) {
   const auto check = [words](std::string& text) -> std::string {
     if (std::find(words.begin(), words.end(), text) != words.end()) return {};
-    return "it is '" + text + "', expected one of " + joined(words);
+    return "it is '" + text + "', expected one of " + joined_words(words);
   };
   return CLI::Validator(check, "");
 }
@@ -353,7 +173,7 @@ void add_scene_options(CLI::App& command, BenchOptions& options) {
                      "One or more .obj, .tri or .ins files, each also with .gz, or some of " +
                          procedural_scene_names());
   command.add_option("--list", options.list,
-                     "All scenes of a list: " + joined(scene_list_names()) +
+                     "All scenes of a list: " + joined_words(scene_list_names()) +
                          ", or a text file with a scene a line");
   command
       .add_option("--scenes-folder,--scenes", options.scenes_folder,
@@ -426,7 +246,7 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
                    "Triangles drawn by their areas, --ray-count of them on one thread, by each "
                    "kind of discrete distribution, in place of rays");
   command.add_option("--queries", options.queries,
-                     "A table of queries on one thread, some of " + joined(query_names()) +
+                     "A table of queries on one thread, some of " + joined_words(query_names()) +
                          ", next to what they replace: stepping from hit to hit, and Embree's "
                          "filter functions");
   command.add_option("--max-hits", options.max_hits, "Hits of a ray in --queries; 0: all")
@@ -436,6 +256,12 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
                   "Commits of so many copies of the scene, a tree for each, when one has moved, in "
                   "place of rays")
       ->check(whole_number(1, 1000000));
+  command.add_option("--shapes", options.shapes,
+                     "A table of generated scenes on one thread, in place of a scene: some of " +
+                         joined_words(cloud_names()) + ", next to Embree's own points and curves");
+  command.add_option("--shape-count", options.shape_count, "How many shapes --shapes generates")
+      ->check(whole_number(16, 1 << 26))
+      ->capture_default_str();
   command.add_option("--rounds", options.rounds, "Runs of each side; their medians count")
       ->check(whole_number(1, 1000))
       ->capture_default_str();

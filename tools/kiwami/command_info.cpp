@@ -35,12 +35,6 @@ std::vector<std::string> isa_names(uint32_t bits) {
   return names;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 std::string version_text(uint32_t version) {
   return format("%u.%u.%u", version / 1000000, version / 1000 % 1000, version % 1000);
 }
@@ -111,7 +105,7 @@ void print_text(const nlohmann::ordered_json& report) {
   };
   const auto text = [&](const char* key) { return report[key].get<std::string>(); };
   const auto words = [&](const char* key) {
-    return joined(report[key].get<std::vector<std::string>>());
+    return joined_words(report[key].get<std::vector<std::string>>());
   };
   line("version", text("version") + ", ABI " + report["abi_version"].dump());
   line("build", text("compiler") + ", " + text("build_type") + ", tasking " + text("tasking"));
@@ -122,7 +116,7 @@ void print_text(const nlohmann::ordered_json& report) {
   for (const auto& [isa, widths] : report["native_widths"].items()) {
     std::vector<std::string> numbers;
     for (const auto& width : widths) numbers.push_back(width.dump());
-    line(("  " + isa).c_str(), "widths " + joined(numbers) + "; others on scalar kernels");
+    line(("  " + isa).c_str(), "widths " + joined_words(numbers) + "; others on scalar kernels");
   }
   line("default", text("default_isa") + ", " + report["default_bvh_width"].dump() + " wide, " +
                       report["threads"].dump() + " threads");

@@ -194,6 +194,22 @@ Vec3 parse_vector(const std::string& option, const std::string& text) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+std::vector<std::string> split_different_words(const std::string& option, const std::string& text) {
+  std::vector<std::string> words = split_words(option, text);
+  for (const std::string& word : words) {
+    if (std::count(words.begin(), words.end(), word) == 1) continue;
+    throw UsageError(format("%s is '%s', expected different words between commas", option.c_str(),
+                            text.c_str()));
+  }
+  return words;
+}
+
+std::string joined_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
 Size parse_size(const std::string& option, const std::string& text) {
   const size_t cross = text.find('x');
   const std::string_view whole = text;

@@ -63,6 +63,12 @@ Vec3 parse_vector(const std::string& option, const std::string& text);
 std::vector<std::string> split_words(const std::string& option, const std::string& text,
                                      char separator = ',');
 
+/// The same, where `option` is also named when a word comes twice.
+std::vector<std::string> split_different_words(const std::string& option, const std::string& text);
+
+/// "a, b, c".
+std::string joined_words(const std::vector<std::string>& words);
+
 /// "640x480".
 struct Size {
   uint32_t width;
