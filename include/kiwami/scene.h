@@ -113,9 +113,13 @@ enum {
   KIWAMI_BUILDER_OIBVH = 8,          /* the complete tree along a Morton curve */
   KIWAMI_BUILDER_WIDE_BOTTOM_UP = 9, /* as PLOC within blocks, straight to the wide tree: there is
                                       * no binary tree to optimise, and contractions have no say */
-  KIWAMI_BUILDER_STR = 10,          /* the tiles of a sort along each axis, as R-trees are packed */
-  KIWAMI_BUILDER_TRBVH = 11,        /* LBVH, its treelets restructured */
-  KIWAMI_BUILDER_WIDE_TOP_DOWN = 12 /* binned, straight to the wide tree: the same holds */
+  KIWAMI_BUILDER_STR = 10,   /* the tiles of a sort along each axis, as R-trees are packed */
+  KIWAMI_BUILDER_TRBVH = 11, /* LBVH, its treelets restructured */
+  KIWAMI_BUILDER_WIDE_TOP_DOWN = 12, /* binned, straight to the wide tree: the same holds */
+  KIWAMI_BUILDER_WIDE_LINEAR = 13,   /* the cells of a Morton curve, straight to the wide tree: the
+                                      * same holds; the quickest of all */
+  KIWAMI_BUILDER_TRIAL = 14          /* BINNED_SAH and PLOC, with the optimisers of binary trees;
+                                      * the tree stays that representative rays visit less */
 };
 enum {
   KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1,  /* subtrees move to where the area shrinks most */

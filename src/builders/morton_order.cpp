@@ -165,12 +165,4 @@ MortonOrder sort_by_morton_code(Array<BuildPrimitive> primitives, Memory& memory
   return order;
 }
 
-uint32_t middle_of_cell(const Array<uint64_t>& codes, uint32_t begin, uint32_t end) {
-  const uint64_t last = codes[end - 1], differing = codes[begin] ^ last;
-  if (differing == 0) return begin + (end - begin + 1) / 2;
-  const uint64_t boundary = last & ~(std::bit_floor(differing) - 1);
-  return static_cast<uint32_t>(
-      std::lower_bound(codes.begin() + begin, codes.begin() + end, boundary) - codes.begin());
-}
-
 }  // namespace kiwami

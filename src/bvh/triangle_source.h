@@ -56,15 +56,36 @@ struct TriangleMeshView {
 
   /// For indices that may have changed since they were checked: throws Error(INVALID_ARGUMENT) for
   /// one at or beyond the vertex count.
-  void checked_indices_of(uint32_t primitive, uint32_t index[3]) const;
-  void checked_corners_of(uint32_t primitive, Vec3f corner[3]) const;
+  void checked_indices_of(uint32_t primitive, uint32_t index[3]) const {
+    indices_of(primitive, index);
+    for (uint32_t k = 0; k < 3; ++k) {
+      if (index[k] >= vertex_count) refuse_index(k, primitive, index[k]);
+    }
+  }
+  void checked_corners_of(uint32_t primitive, Vec3f corner[3]) const {
+    uint32_t index[3];
+    checked_indices_of(primitive, index);
+    read_vertices(index, corner);
+  }
+
+  const unsigned char* vertex(uint32_t index) const { return vertices + index * vertex_stride; }
+
+  /// Ask for cache lines that will be read soon; indices must be right. Inlined by force: GCC takes
+  /// a function that only prefetches for one without effects and drops it.
+  __attribute__((always_inline)) void prefetch_indices(uint32_t primitive) const {
+    if (indices) __builtin_prefetch(indices + primitive * index_stride);
+  }
+  __attribute__((always_inline)) void prefetch_vertices(uint32_t primitive) const {
+    uint32_t index[3];
+    indices_of(primitive, index);
+    for (const uint32_t k : index) __builtin_prefetch(vertex(k));
+  }
 
  private:
   void read_vertices(const uint32_t index[3], Vec3f corner[3]) const {
-    for (int k = 0; k < 3; ++k) {
-      std::memcpy(&corner[k], vertices + index[k] * vertex_stride, sizeof(Vec3f));
-    }
+    for (int k = 0; k < 3; ++k) std::memcpy(&corner[k], vertex(index[k]), sizeof(Vec3f));
   }
+  [[noreturn]] void refuse_index(uint32_t corner, uint32_t primitive, uint32_t index) const;
 };
 
 /// All meshes of a scene, by rising first_id, without gaps.
@@ -84,6 +105,15 @@ struct TriangleSource {
   void corners_of(uint32_t id, Vec3f corner[3]) const {
     const TriangleMeshView& mesh = mesh_of(id);
     mesh.corners_of(id - mesh.first_id, corner);
+  }
+
+  __attribute__((always_inline)) void prefetch_indices(uint32_t id) const {
+    const TriangleMeshView& mesh = mesh_of(id);
+    mesh.prefetch_indices(id - mesh.first_id);
+  }
+  __attribute__((always_inline)) void prefetch_vertices(uint32_t id) const {
+    const TriangleMeshView& mesh = mesh_of(id);
+    mesh.prefetch_vertices(id - mesh.first_id);
   }
 };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/build_primitives.h"
 
+#include <simde/x86/sse2.h>
+
+#include <cstring>
 #include <numeric>
 
 #include "core/collect_boxes.h"
@@ -9,14 +12,37 @@ namespace kiwami {
 
 namespace {
 
-/// The box of a triangle; false when it can never be hit.
+/// The three coordinates at any address, and no byte beyond them; lane 3 is 0.
+simde__m128 load_vertex(const unsigned char* at) {
+  double xy;
+  float z;
+  std::memcpy(&xy, at, sizeof xy);
+  std::memcpy(&z, at + sizeof xy, sizeof z);
+  return simde_mm_movelh_ps(simde_mm_castpd_ps(simde_mm_set_sd(xy)), simde_mm_set_ss(z));
+}
+
+/// The box of a triangle; false when it can never be hit (can_be_hit).
 bool make_primitive(const TriangleMeshView& mesh, uint32_t primitive, BuildPrimitive& made) {
-  Vec3f corner[3];
-  mesh.checked_corners_of(primitive, corner);
-  if (!can_be_hit(corner)) return false;
-  Bounds bounds = Bounds::empty();
-  for (const Vec3f& vertex : corner) bounds.extend(vertex);
-  made = {bounds.lower, mesh.first_id + primitive, bounds.upper, 0};
+  uint32_t index[3];
+  mesh.checked_indices_of(primitive, index);
+  const simde__m128 first = load_vertex(mesh.vertex(index[0]));
+  const simde__m128 second = load_vertex(mesh.vertex(index[1]));
+  const simde__m128 third = load_vertex(mesh.vertex(index[2]));
+  // In this order the first of equal zeros stays, as in Bounds::extend.
+  const simde__m128 lower = simde_mm_min_ps(third, simde_mm_min_ps(second, first));
+  const simde__m128 upper = simde_mm_max_ps(third, simde_mm_max_ps(second, first));
+  const simde__m128 most = simde_mm_set1_ps(KIWAMI_MAX_COORDINATE);
+  const auto is_within = [&](simde__m128 vertex) {
+    const simde__m128 size = simde_mm_andnot_ps(simde_mm_set1_ps(-0.0f), vertex);
+    return simde_mm_cmple_ps(size, most);
+  };
+  const simde__m128 all_within =
+      simde_mm_and_ps(is_within(first), simde_mm_and_ps(is_within(second), is_within(third)));
+  if (simde_mm_movemask_ps(all_within) != 15) return false;
+  float* const words = reinterpret_cast<float*>(&made);
+  simde_mm_storeu_ps(words, lower);
+  simde_mm_storeu_ps(words + 4, upper);
+  made.id = mesh.first_id + primitive;
   return true;
 }
 

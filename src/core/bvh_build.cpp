@@ -107,7 +107,10 @@ void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
   }
   // Nothing is merged, so nothing is divided to be merged.
   parameters.set(KIWAMI_PARAMETER_MERGE_LEAVES, 0);
-  if (builds_wide_tree(parameters)) {
+  // Of two children a node, wide_linear is as lbvh, so that the quality that it stands for is too.
+  const bool has_binary_twin =
+      parameters.whole(KIWAMI_PARAMETER_BUILDER) == KIWAMI_BUILDER_WIDE_LINEAR;
+  if (builds_wide_tree(parameters) && !(plan.width == 2 && has_binary_twin)) {
     if (plan.width == 2) {
       throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                   "width is 2, expected 4, 8 or 16, as builder %s makes no binary tree",
@@ -118,8 +121,11 @@ void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
                     memory);
     return;
   }
+  // Boxes hold nothing that a ray could hit: there, the areas alone guide what goes by rays.
+  const Array<RepresentativeRay> rays = sample_rays_for(parameters, source(), memory);
   const BinaryBvh binary =
-      build_binary_bvh(std::move(primitives), source(), parameters, width, memory, parallel);
+      build_binary_bvh(std::move(primitives), source(), {rays.data(), rays.size()}, parameters,
+                       width, memory, parallel);
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     primitives = collect(source());
     const TriangleSource triangles = source();
@@ -130,8 +136,6 @@ void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
     tree_ = flatten(binary, memory);
     return;
   }
-  // Boxes hold nothing that a ray could hit: there, the areas alone guide what goes by rays.
-  const Array<RepresentativeRay> rays = sample_rays_for(parameters, source(), memory);
   WideTreeConfig config = wide_tree_config(parameters, width);
   config.rays = {rays.data(), rays.size()};
   tree_ = flatten(contract_by(binary, source(), config, memory, parallel), binary, memory);

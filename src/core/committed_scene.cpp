@@ -175,10 +175,11 @@ void CommittedScene::number_triangles(const AttachedGeometry* geometries, size_t
 }
 
 BinaryBvh CommittedScene::build_binary(Array<BuildPrimitive> primitives,
+                                       std::span<const RepresentativeRay> rays,
                                        const SceneParameters& parameters,
                                        const Parallel& parallel) {
-  BinaryBvh binary =
-      build_binary_bvh(std::move(primitives), source(), parameters, tree_.width, memory_, parallel);
+  BinaryBvh binary = build_binary_bvh(std::move(primitives), source(), rays, parameters,
+                                      tree_.width, memory_, parallel);
   if (parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     primitives = collect_build_primitives(source(), numbered_count_, memory_, parallel);
     const TriangleSource triangles = source();
@@ -214,7 +215,7 @@ void CommittedScene::build(const SceneParameters& parameters,
       draft = build_wide_draft(std::move(primitives), config, parameters, memory_, parallel);
       parallel.begin_stage(kMadeWide, expected_tasks);
     } else {
-      BinaryBvh binary = build_binary(std::move(primitives), parameters, parallel);
+      BinaryBvh binary = build_binary(std::move(primitives), rays, parameters, parallel);
       parallel.begin_stage(kMadeWide, expected_tasks);
       draft = contract_to_draft(std::move(binary), source(), config, memory_, parallel);
     }

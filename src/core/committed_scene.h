@@ -119,8 +119,8 @@ class CommittedScene : public Object<CommittedScene> {
   };
 
   void number_triangles(const AttachedGeometry* geometries, size_t count);
-  BinaryBvh build_binary(Array<BuildPrimitive> primitives, const SceneParameters& parameters,
-                         const Parallel& parallel);
+  BinaryBvh build_binary(Array<BuildPrimitive> primitives, std::span<const RepresentativeRay> rays,
+                         const SceneParameters& parameters, const Parallel& parallel);
   void build(const SceneParameters& parameters, std::span<const RepresentativeRay> rays,
              const Parallel& parallel);
   void show_tree(const Bounds& bounds);

@@ -25,8 +25,8 @@ PartTree build_part_tree(Array<BuildPrimitive> boxes, const PartPlan& plan) {
 
   PartTree part;
   part.primitive_count = boxes.size();
-  BinaryBvh binary = build_binary_bvh(std::move(boxes), no_triangles, plan.parameters, plan.width,
-                                      plan.memory, plan.parallel);
+  BinaryBvh binary = build_binary_bvh(std::move(boxes), no_triangles, {}, plan.parameters,
+                                      plan.width, plan.memory, plan.parallel);
   part.bounds = binary.nodes.empty() ? Bounds::empty() : binary.nodes[0].bounds;
   if (verifies) {
     verify_binary_bvh(binary, kept.data(), kept.size(),

@@ -23,7 +23,9 @@
 #include "optimizers/sato_reorder.h"
 #include "optimizers/sequential_reinsertion.h"
 #include "optimizers/treelet_restructuring.h"
+#include "wide/visit_weights.h"
 #include "wide/wide_bottom_up.h"
+#include "wide/wide_linear.h"
 #include "wide/wide_top_down.h"
 
 namespace kiwami {
@@ -48,6 +50,8 @@ constexpr Method kMethods[] = {
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_STR, "str"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_TRBVH, "trbvh"},
     {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_WIDE_TOP_DOWN, "wide_top_down"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_WIDE_LINEAR, "wide_linear"},
+    {KIWAMI_STAGE_BUILDER, KIWAMI_BUILDER_TRIAL, "trial"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_SURFACE_AREA, "surface_area"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_OPTIMAL, "optimal"},
     {KIWAMI_STAGE_CONTRACTION, KIWAMI_CONTRACTION_RAY_DISTRIBUTION, "ray_distribution"},
@@ -119,6 +123,7 @@ bool makes_leaves(const SceneParameters& parameters) {
     case KIWAMI_BUILDER_SPATIAL_SPLIT:
       return true;
     case KIWAMI_BUILDER_LBVH:
+    case KIWAMI_BUILDER_WIDE_LINEAR:
       return !is_binary_edited(parameters);
     default:
       return false;
@@ -126,8 +131,9 @@ bool makes_leaves(const SceneParameters& parameters) {
 }
 
 CurveCode curve_code(const SceneParameters& parameters) {
-  return parameters.whole(KIWAMI_PARAMETER_CURVE_CODE) != 0 ? CurveCode::kExtended
-                                                            : CurveCode::kPlain;
+  const bool is_extended = parameters.whole(KIWAMI_PARAMETER_CURVE_CODE) != 0 ||
+                           parameters.whole(KIWAMI_PARAMETER_BUILDER) == KIWAMI_BUILDER_WIDE_LINEAR;
+  return is_extended ? CurveCode::kExtended : CurveCode::kPlain;
 }
 
 LbvhBuilder::Config lbvh_config(const SceneParameters& parameters, uint32_t width) {
@@ -160,6 +166,7 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const TriangleSource& so
                       const Parallel& parallel) {
   switch (parameters.whole(KIWAMI_PARAMETER_BUILDER)) {
     case KIWAMI_BUILDER_LBVH:
+    case KIWAMI_BUILDER_WIDE_LINEAR:
       return LbvhBuilder::build(std::move(primitives), lbvh_config(parameters, width), memory,
                                 parallel);
     case KIWAMI_BUILDER_PLOC:
@@ -342,9 +349,12 @@ WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t widt
   return config;
 }
 
-BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource& source,
-                           const SceneParameters& parameters, uint32_t width, Memory& memory,
-                           const Parallel& parallel) {
+namespace {
+
+/// By one builder.
+BinaryBvh build_by(Array<BuildPrimitive> primitives, const TriangleSource& source,
+                   const SceneParameters& parameters, uint32_t width, Memory& memory,
+                   const Parallel& parallel) {
   const SahCosts costs = costs_of(parameters, width);
   BinaryBvh bvh = run_builder(std::move(primitives), source, parameters, width, memory, parallel);
   for (const uint32_t method : parameters.optimizers()) {
@@ -359,10 +369,58 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
   return bvh;
 }
 
+/// What a ray costs in the wide tree that a binary one becomes, by the visits of representative
+/// rays.
+double cost_to_rays(const BinaryBvh& bvh, const TriangleSource& source,
+                    const WideTreeConfig& config, Memory& memory, const Parallel& parallel) {
+  const Array<float> weights =
+      measure_visit_weights(bvh, source, config.rays, kVisitGuessWeight, memory, parallel);
+  const Contraction contraction = contract_by(bvh, source, config, memory, parallel);
+  double cost = 0.0;
+  for (const ContractedSlot& slot : contraction.slots) {
+    const float of_slot = slot.is_leaf() ? config.leaf_cost : config.node_cost;
+    cost += static_cast<double>(of_slot) * static_cast<double>(weights[slot.binary_node]);
+  }
+  return cost;
+}
+
+/// Top-down or bottom-up: which of the two is the better tree depends on the scene, and that of the
+/// lower cost by areas is often not the one that rays visit less. So both are built, and tried.
+BinaryBvh build_by_trial(Array<BuildPrimitive> primitives, const TriangleSource& source,
+                         std::span<const RepresentativeRay> rays, SceneParameters parameters,
+                         uint32_t width, Memory& memory, const Parallel& parallel) {
+  Array<BuildPrimitive> copy(memory, primitives.size());
+  std::copy(primitives.begin(), primitives.end(), copy.begin());
+  parameters.set(KIWAMI_PARAMETER_BUILDER, KIWAMI_BUILDER_PLOC);
+  BinaryBvh bottom_up = build_by(std::move(copy), source, parameters, width, memory, parallel);
+  parameters.set(KIWAMI_PARAMETER_BUILDER, KIWAMI_BUILDER_BINNED_SAH);
+  BinaryBvh top_down = build_by(std::move(primitives), source, parameters, width, memory, parallel);
+  if (top_down.nodes.empty()) return top_down;
+  WideTreeConfig config = wide_tree_config(parameters, width);
+  // Without a triangle no ray has met anything: only areas count.
+  if (source.mesh_count != 0) config.rays = rays;
+  const double of_top_down = cost_to_rays(top_down, source, config, memory, parallel);
+  const double of_bottom_up = cost_to_rays(bottom_up, source, config, memory, parallel);
+  return of_bottom_up < of_top_down ? std::move(bottom_up) : std::move(top_down);
+}
+
+}  // namespace
+
+BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource& source,
+                           std::span<const RepresentativeRay> rays,
+                           const SceneParameters& parameters, uint32_t width, Memory& memory,
+                           const Parallel& parallel) {
+  if (parameters.whole(KIWAMI_PARAMETER_BUILDER) == KIWAMI_BUILDER_TRIAL) {
+    return build_by_trial(std::move(primitives), source, rays, parameters, width, memory, parallel);
+  }
+  return build_by(std::move(primitives), source, parameters, width, memory, parallel);
+}
+
 Array<RepresentativeRay> sample_rays_for(const SceneParameters& parameters,
                                          const TriangleSource& source, Memory& memory) {
   const std::span<const uint32_t> methods = parameters.optimizers();
   const bool goes_by_rays =
+      parameters.whole(KIWAMI_PARAMETER_BUILDER) == KIWAMI_BUILDER_TRIAL ||
       parameters.whole(KIWAMI_PARAMETER_CONTRACTION) == KIWAMI_CONTRACTION_RAY_DISTRIBUTION ||
       std::count(methods.begin(), methods.end(), KIWAMI_OPTIMIZER_REORDER_NARY) != 0;
   return goes_by_rays ? sample_rays(source, kSampledRayCount, memory) : Array<RepresentativeRay>();
@@ -381,7 +439,8 @@ void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
 
 bool builds_wide_tree(const SceneParameters& parameters) {
   const uint32_t builder = parameters.whole(KIWAMI_PARAMETER_BUILDER);
-  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN;
+  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN ||
+         builder == KIWAMI_BUILDER_WIDE_LINEAR;
 }
 
 WideDraft build_wide_draft(Array<BuildPrimitive> primitives, const WideTreeConfig& config,
@@ -395,6 +454,10 @@ WideDraft build_wide_draft(Array<BuildPrimitive> primitives, const WideTreeConfi
                 "those of wide trees",
                 method_name(KIWAMI_STAGE_BUILDER, builder),
                 method_name(KIWAMI_STAGE_OPTIMIZER, method));
+  }
+  if (builder == KIWAMI_BUILDER_WIDE_LINEAR) {
+    return build_wide_linear(std::move(primitives), {config.width, config.max_leaf_size}, memory,
+                             parallel);
   }
   if (builder == KIWAMI_BUILDER_WIDE_TOP_DOWN) {
     return build_wide_top_down(std::move(primitives), top_down_config(config, parameters), memory,

@@ -24,8 +24,10 @@ uint32_t binary_leaf_size_of(const SceneParameters& parameters, uint32_t width);
 WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t width);
 
 /// Runs the builder that the parameters name, and those of their optimisers that act on the binary
-/// tree. The primitives are those of the source that can be hit.
+/// tree. The primitives are those of the source that can be hit; rays are for builders that go by
+/// them. Builders that make the wide tree itself stand for those of the same splits.
 BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource& source,
+                           std::span<const RepresentativeRay> rays,
                            const SceneParameters& parameters, uint32_t width, Memory& memory,
                            const Parallel& parallel);
 

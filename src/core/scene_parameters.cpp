@@ -51,8 +51,8 @@ constexpr uint32_t kBestOptimizers[] = {KIWAMI_OPTIMIZER_PARALLEL_REINSERTION,
 /// By number.
 constexpr QualityMethods kQualities[] = {
     {KIWAMI_BUILDER_BINNED_SAH, kBalancedOptimizers, KIWAMI_CONTRACTION_OPTIMAL},
-    {KIWAMI_BUILDER_LBVH, {}, KIWAMI_CONTRACTION_SURFACE_AREA},
-    {KIWAMI_BUILDER_BINNED_SAH, kBestOptimizers, KIWAMI_CONTRACTION_OPTIMAL},
+    {KIWAMI_BUILDER_WIDE_LINEAR, {}, KIWAMI_CONTRACTION_OPTIMAL},
+    {KIWAMI_BUILDER_TRIAL, kBestOptimizers, KIWAMI_CONTRACTION_OPTIMAL},
 };
 
 /// The stage whose method a parameter chooses; 0: it chooses none.

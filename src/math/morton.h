@@ -36,7 +36,10 @@ class MortonGrid {
     uint64_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const float cell = (point[axis] - lower_[axis]) * scale_[axis];
-      code |= spread_by_three(static_cast<uint64_t>(cell < kCells ? cell : kCells)) << axis;
+      // A conversion to a signed number of 32 bits is one instruction.
+      code |= spread_by_three(
+                  static_cast<uint32_t>(static_cast<int32_t>(cell < kCells ? cell : kCells)))
+              << axis;
     }
     return code;
   }

@@ -21,13 +21,18 @@ void radix_sort(Array<T>& elements, uint32_t key_bits, Key&& key, Memory& memory
   Array<T> other(memory, elements.size());
   Array<uint32_t> offsets(memory, blocks * kDigits);
   for (uint32_t shift = 0; shift < key_bits; shift += kDigitBits) {
-    const auto digit = [&](const T& element) {
+    // Copies, so that what the loops write cannot change them.
+    const auto digit = [key, shift](const T& element) {
       return static_cast<uint32_t>(key(element) >> shift) & (kDigits - 1);
     };
+    const T* const from = elements.data();
+    T* const to = other.data();
     offsets.fill_zero();
-    parallel.for_blocks(elements.size(), kBlockSize, [&](size_t begin, size_t end) {
-      uint32_t* counts = offsets.data() + begin / kBlockSize * kDigits;
-      for (size_t i = begin; i < end; ++i) ++counts[digit(elements[i])];
+    parallel.for_blocks(elements.size(), kBlockSize, [&, digit, from](size_t begin, size_t end) {
+      uint32_t* const counts = offsets.data() + begin / kBlockSize * kDigits;
+      for (const T* element = from + begin; element != from + end; ++element) {
+        ++counts[digit(*element)];
+      }
     });
     uint32_t next = 0;
     for (uint32_t value = 0; value < kDigits; ++value) {
@@ -38,10 +43,13 @@ void radix_sort(Array<T>& elements, uint32_t key_bits, Key&& key, Memory& memory
         next += count;
       }
     }
-    parallel.for_blocks(elements.size(), kBlockSize, [&](size_t begin, size_t end) {
-      uint32_t* places = offsets.data() + begin / kBlockSize * kDigits;
-      for (size_t i = begin; i < end; ++i) other[places[digit(elements[i])]++] = elements[i];
-    });
+    parallel.for_blocks(elements.size(), kBlockSize,
+                        [&, digit, from, to](size_t begin, size_t end) {
+                          uint32_t* const places = offsets.data() + begin / kBlockSize * kDigits;
+                          for (const T* element = from + begin; element != from + end; ++element) {
+                            to[places[digit(*element)]++] = *element;
+                          }
+                        });
     std::swap(elements, other);
   }
 }

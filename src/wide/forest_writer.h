@@ -4,7 +4,7 @@
 
 #include "wide/chosen_slots.h"
 #include "wide/cluster_costs.h"
-#include "wide/wide_parts.h"
+#include "wide/part_arrays.h"
 
 namespace kiwami {
 
@@ -24,17 +24,10 @@ class ForestWriter {
       : forest_(forest),
         clusters_(clusters),
         fill_from_(fill_nodes ? N / 2 + 2 : N),
-        nodes_(memory, capacity),
-        children_(memory, size_t{2} * capacity),
-        boxes_(memory, size_t{2} * capacity),
-        leaf_sizes_(memory, capacity) {}
+        arrays_(capacity, 2 * capacity, capacity, memory) {}
 
   /// Starts a part. Primitives are written to ids, leaf by leaf.
-  void start(uint32_t* ids) {
-    ids_ = ids;
-    node_count_ = slot_count_ = leaf_count_ = 0;
-    node_area_ = leaf_area_ = 0.0;
-  }
+  void start(uint32_t* ids) { arrays_.start(ids); }
 
   WideCluster write(uint32_t tree, uint32_t part) {
     WideCluster cluster = {forest_.box_of(tree), forest_.costs_of(tree).of(1), 0, part, 0};
@@ -50,38 +43,15 @@ class ForestWriter {
   /// The children of least cost that a tree has if it becomes a node; returns their number.
   uint32_t choose(uint32_t tree, ChosenSlot* chosen) const { return distribute(tree, N, chosen); }
 
-  WidePart take(Memory& memory) const {
-    WidePart part{};
-    part.node_count = node_count_;
-    part.slot_count = slot_count_;
-    part.leaf_count = leaf_count_;
-    part.node_area = node_area_;
-    part.leaf_area = leaf_area_;
-    unsigned char* next =
-        static_cast<unsigned char*>(memory.allocate(part.bytes(), WidePart::kAlignment));
-    part.nodes = copy(nodes_, node_count_, next);
-    part.boxes = copy(boxes_, slot_count_, next);
-    part.children = copy(children_, slot_count_, next);
-    part.leaf_sizes = copy(leaf_sizes_, leaf_count_, next);
-    return part;
-  }
+  WidePart take(Memory& memory) const { return arrays_.take(memory); }
 
  private:
-  /// Copies to the memory at next, which moves behind the copy.
-  template <typename T>
-  static T* copy(const Array<T>& from, uint32_t count, unsigned char*& next) {
-    T* to = reinterpret_cast<T*>(next);
-    std::copy_n(from.begin(), count, to);
-    next += count * sizeof(T);
-    return to;
-  }
-
   /// Gives an inner child its number, writes a leaf; returns the reference to it.
   uint32_t write_child(uint32_t tree) {
     if (forest_.is_leaf(tree)) return write_leaf(tree);
     if (forest_.is_cluster(tree)) return kClusterFlag | forest_.cluster_of(tree);
-    node_area_ += forest_.box_of(tree).half_area();
-    return node_count_++;
+    arrays_.add_node_area(forest_.box_of(tree).half_area());
+    return arrays_.add_node();
   }
 
   /// Writes a node and all below it; returns the height.
@@ -89,13 +59,11 @@ class ForestWriter {
     ChosenSlot chosen[N];
     uint32_t count = choose(tree, chosen);
     if (fill_from_ <= count) count = divide_leaves(forest_, chosen, count, N);
-    const uint32_t first = slot_count_;
-    slot_count_ += count;
-    nodes_[node] = {first, count};
+    const uint32_t first = arrays_.add_slots(node, count);
     for (uint32_t i = 0; i < count; ++i) {
-      boxes_[first + i] = forest_.box_of(chosen[i].binary_node);
-      children_[first + i] = chosen[i].is_leaf ? write_leaf(chosen[i].binary_node)
-                                               : write_child(chosen[i].binary_node);
+      const uint32_t child = chosen[i].binary_node;
+      arrays_.set_slot(first + i, forest_.box_of(child),
+                       chosen[i].is_leaf ? write_leaf(child) : write_child(child));
     }
     uint32_t height = 0;
     for (uint32_t i = 0; i < count; ++i) {
@@ -103,7 +71,7 @@ class ForestWriter {
       if (chosen[i].is_leaf) continue;
       height =
           std::max(height, forest_.is_cluster(child) ? clusters_[forest_.cluster_of(child)].height
-                                                     : expand(child, children_[first + i]));
+                                                     : expand(child, arrays_.child(first + i)));
     }
     return height + 1;
   }
@@ -137,23 +105,14 @@ class ForestWriter {
   }
 
   uint32_t write_leaf(uint32_t tree) {
-    leaf_area_ += forest_.box_of(tree).half_area();
-    uint32_t* const end = forest_.copy_primitives(tree, ids_);
-    leaf_sizes_[leaf_count_] = static_cast<uint8_t>(end - ids_);
-    ids_ = end;
-    return kLeafFlag | leaf_count_++;
+    uint32_t* const end = forest_.copy_primitives(tree, arrays_.ids());
+    return arrays_.add_leaf(end, forest_.box_of(tree).half_area());
   }
 
   const Forest& forest_;
   const WideCluster* clusters_;
   uint32_t fill_from_;  ///< nodes of at least so many children are filled
-  Array<ContractedNode> nodes_;
-  Array<uint32_t> children_;
-  Array<Bounds> boxes_;
-  Array<uint8_t> leaf_sizes_;
-  uint32_t* ids_ = nullptr;
-  uint32_t node_count_ = 0, slot_count_ = 0, leaf_count_ = 0;
-  double node_area_ = 0.0, leaf_area_ = 0.0;
+  PartArrays arrays_;
 };
 
 }  // namespace kiwami

@@ -43,7 +43,7 @@ class Ring {
     Entry& entry = entries_[chosen];
     const SharedPlace place = {entry.node, mask_of(entry.used, size),
                                static_cast<uint16_t>(entry.used)};
-    entry.used += size;
+    use(entry, entry.used + size);
     if (entry.used == width_) close(chosen);
     return place;
   }
@@ -79,8 +79,16 @@ class Ring {
     return open_entry();
   }
 
+  /// Gives an entry another number of used slots.
+  void use(Entry& entry, uint32_t used) {
+    --with_used_[entry.used];
+    ++with_used_[used];
+    entry.used = used;
+  }
+
   /// The oldest entry that the owner fills; size_ where there is none.
   size_t find_exact(uint32_t size) const {
+    if (with_used_[width_ - size] == 0) return size_;
     size_t i = 0;
     while (i < size_ && entries_[i].used + size != width_) ++i;
     return i;
@@ -104,8 +112,18 @@ class Ring {
     return fullest;
   }
 
+  /// Whether two entries together fill a node.
+  bool has_exact_pair() const {
+    if (with_used_[width_ / 2] > 1) return true;
+    for (uint32_t used = 1; used < width_ / 2; ++used) {
+      if (with_used_[used] != 0 && with_used_[width_ - used] != 0) return true;
+    }
+    return false;
+  }
+
   /// Joins the two entries that together fill a node, or else the two that fill most of one.
   bool join_pair(bool must_fill) {
+    if (must_fill && !has_exact_pair()) return false;
     size_t best_low = 0, best_high = 0;
     uint32_t best_used = must_fill ? width_ - 1 : 0;
     for (size_t high = 1; high < size_; ++high) {
@@ -119,7 +137,7 @@ class Ring {
     }
     if (best_high == 0) return false;
     move(entries_[best_high].node, entries_[best_low].node, entries_[best_low].used);
-    entries_[best_low].used = best_used;
+    use(entries_[best_low], best_used);
     close(best_high);
     if (best_used == width_) close(best_low);
     return true;
@@ -155,10 +173,12 @@ class Ring {
 
   size_t open_entry() {
     entries_[size_] = {open_node(), 0};
+    ++with_used_[0];
     return size_++;
   }
 
   void close(size_t index) {
+    --with_used_[entries_[index].used];
     std::copy(entries_.begin() + index + 1, entries_.begin() + size_, entries_.begin() + index);
     --size_;
   }
@@ -168,7 +188,8 @@ class Ring {
   Array<Entry> entries_;  ///< by age
   size_t size_ = 0;
   GrowingArray<OpenedNode> opened_;
-  uint32_t given_up_[kMaxWidth + 1];  ///< by used slots: the last one given up
+  uint32_t with_used_[kMaxWidth + 1] = {};  ///< by used slots: entries that have so many
+  uint32_t given_up_[kMaxWidth + 1];        ///< by used slots: the last one given up
 };
 
 /// Gives the nodes that are left their final numbers, in the order of their last owners.
@@ -178,20 +199,27 @@ void number_by_last_owner(uint32_t opened, SharedPlaces& shared, Memory& memory)
   for (size_t i = 0; i < shared.places.size(); ++i) {
     last_owner[shared.places[i].index] = static_cast<uint32_t>(i);
   }
+  uint32_t count = 0;
   for (size_t i = 0; i < shared.places.size(); ++i) {
     const uint32_t index = shared.places[i].index;
-    if (last_owner[index] == i) number[index] = shared.count++;
+    if (last_owner[index] == i) number[index] = count++;
   }
-  for (SharedPlace& place : shared.places) place.index = number[place.index];
+  shared.used = Array<uint16_t>(memory, count);
+  shared.used.fill_zero();
+  for (SharedPlace& place : shared.places) {
+    place.index = number[place.index];
+    shared.used[place.index] = static_cast<uint16_t>(shared.used[place.index] | place.mask);
+  }
 }
 
 }  // namespace
 
 SharedPlaces place_alone(const Array<uint8_t>& sizes, Memory& memory) {
   SharedPlaces shared{Array<SharedPlace>(memory, sizes.size()),
-                      static_cast<uint32_t>(sizes.size())};
+                      Array<uint16_t>(memory, sizes.size())};
   for (size_t i = 0; i < sizes.size(); ++i) {
-    shared.places[i] = {static_cast<uint32_t>(i), mask_of(0, sizes[i]), 0};
+    shared.used[i] = mask_of(0, sizes[i]);
+    shared.places[i] = {static_cast<uint32_t>(i), shared.used[i], 0};
   }
   return shared;
 }
@@ -201,7 +229,7 @@ SharedPlaces place_shared(const Array<uint8_t>& sizes, uint32_t width, uint32_t 
   uint32_t smallest = width;
   for (const uint8_t size : sizes) smallest = std::min<uint32_t>(smallest, size);
   Ring ring(width, ring_size, smallest, memory);
-  SharedPlaces shared{Array<SharedPlace>(memory, sizes.size()), 0};
+  SharedPlaces shared{Array<SharedPlace>(memory, sizes.size()), {}};
   for (size_t i = 0; i < sizes.size(); ++i) shared.places[i] = ring.place(sizes[i]);
   ring.finish();
   for (SharedPlace& place : shared.places) place = ring.settle(place);

@@ -12,10 +12,12 @@ struct SharedPlace {
   uint16_t first;
 };
 
-/// Places of all owners, and how many nodes (leaf blocks) they need.
+/// Places of all owners, and the nodes (leaf blocks) that they need.
 struct SharedPlaces {
   Array<SharedPlace> places;
-  uint32_t count = 0;
+  Array<uint16_t> used;  ///< by node (leaf block): the slots (lanes) that have an owner
+
+  uint32_t count() const { return static_cast<uint32_t>(used.size()); }
 };
 
 /// Each owner in a node (leaf block) of its own.

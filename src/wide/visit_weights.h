@@ -9,6 +9,9 @@
 
 namespace kiwami {
 
+/// So many rays count as much as the guess from areas that they correct.
+constexpr float kVisitGuessWeight = 16.0f;
+
 /// For each node of a binary tree how likely a ray that looks for its closest hit visits it, 1 for
 /// the root, from rays: a ray visits the boxes that it meets up to its hit. Where few rays come,
 /// the ratio of the areas of a node and its parent, which is what evenly spread lines would give,

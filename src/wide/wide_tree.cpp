@@ -20,11 +20,11 @@ namespace {
 /// Nodes (leaf blocks) that one task packs.
 constexpr size_t kPackingBlock = 1024;
 
+/// Triangles that are packed while a cache line is under way.
+constexpr size_t kLookahead = 12;
+
 /// Bytes that one task copies.
 constexpr size_t kCopyingBlock = size_t{1} << 18;
-
-/// So many rays count as much as the guess from areas that they correct.
-constexpr float kGuessWeight = 16.0f;
 
 /// Where the owners of a draft go.
 struct Layout {
@@ -80,7 +80,7 @@ Array<float> weigh_by_rays(const BinaryBvh& binary, const TriangleSource& source
   if (config.contraction != ContractionMethod::kRayDistribution) return {};
   // Rays that can meet no triangle would say that the whole of each line is visited.
   const auto rays = source.mesh_count != 0 ? config.rays : std::span<const RepresentativeRay>();
-  return measure_visit_weights(binary, source, rays, kGuessWeight, memory, parallel);
+  return measure_visit_weights(binary, source, rays, kVisitGuessWeight, memory, parallel);
 }
 
 SharedPlaces place(const Array<uint8_t>& sizes, const WideTreeConfig& config, Memory& memory) {
@@ -130,32 +130,39 @@ class Packer {
         leaves_(tree.blocks<Block>()) {}
 
   void run(const Parallel& parallel) {
-    parallel.for_blocks(layout_.nodes.count, kPackingBlock, [this](size_t begin, size_t end) {
-      // With the bytes of padding, which are part of the file format.
-      WideNode<N> unused;
-      std::memset(static_cast<void*>(&unused), 0, sizeof unused);
-      set_unused(unused);
-      for (size_t i = begin; i < end; ++i) {
-        std::memcpy(static_cast<void*>(nodes_ + i), &unused, sizeof unused);
-      }
-    });
-    parallel.for_blocks(layout_.leaves.count, kPackingBlock, [this](size_t begin, size_t end) {
-      std::fill(leaves_ + begin, leaves_ + end, unused_leaf());
-    });
+    clear(layout_.nodes.used, nodes_, unused_node(), parallel);
+    clear(layout_.leaves.used, leaves_, unused_leaf(), parallel);
     // Owners of one node write different slots, so they need no order.
     const Array<ContractedNode>& owners = draft_.nodes;
     parallel.for_blocks(owners.size(), kPackingBlock, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) pack_node(owners[i], layout_.nodes.places[i]);
     });
-    if (draft_.children[0] & kLeafFlag) pack_leaf(0);
+    const Array<uint8_t>& sizes = draft_.leaf_sizes;
+    parallel.for_blocks(sizes.size(), kPackingBlock, [&](size_t begin, size_t end) {
+      for (size_t leaf = begin; leaf < end; ++leaf) pack_leaf(static_cast<uint32_t>(leaf));
+    });
   }
 
  private:
-  static void set_unused(WideNode<N>& node) {
+  /// Clears those that are not written as a whole later.
+  template <typename T>
+  static void clear(const Array<uint16_t>& used, T* elements, const T& unused,
+                    const Parallel& parallel) {
+    constexpr uint16_t kAll = (1u << N) - 1;
+    parallel.for_blocks(used.size(), kPackingBlock, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        if (used[i] != kAll) elements[i] = unused;
+      }
+    });
+  }
+
+  static WideNode<N> unused_node() {
+    WideNode<N> node{};
     for (int axis = 0; axis < 3; ++axis) {
       std::fill_n(node.bounds[axis][0], N, FLT_MAX);
       std::fill_n(node.bounds[axis][1], N, -FLT_MAX);
     }
+    return node;
   }
 
   static constexpr bool kHasPositions = std::is_same_v<Block, LeafBlock<N>>;
@@ -181,16 +188,24 @@ class Packer {
         node.bounds[axis][1][target] = subtract_up(box.upper[axis], centre);
       }
       node.child[target] = reference_of(draft_.children[slot], layout_, tree_);
-      if (draft_.children[slot] & kLeafFlag) pack_leaf(draft_.children[slot] & ~kLeafFlag);
     }
   }
 
   void pack_leaf(uint32_t leaf) {
     const SharedPlace& place = layout_.leaves.places[leaf];
-    const uint32_t* ids = draft_.primitive_ids.data() + layout_.first_primitive[leaf];
+    const uint32_t first = layout_.first_primitive[leaf];
     for (uint32_t i = 0; i < draft_.leaf_sizes[leaf]; ++i) {
-      pack_primitive(ids[i], leaves_[place.index], place.first + i);
+      if constexpr (kHasPositions) prefetch_for(first + i);
+      pack_primitive(draft_.primitive_ids[first + i], leaves_[place.index], place.first + i);
     }
+  }
+
+  /// Triangles that are near each other in the tree lie anywhere in their mesh: what those that
+  /// follow need comes into the caches in the meantime, first the indices, then the vertices.
+  void prefetch_for(size_t place) const {
+    const Array<uint32_t>& ids = draft_.primitive_ids;
+    if (place + 2 * kLookahead < ids.size()) source_.prefetch_indices(ids[place + 2 * kLookahead]);
+    if (place + kLookahead < ids.size()) source_.prefetch_vertices(ids[place + kLookahead]);
   }
 
   void pack_primitive(uint32_t id, Block& block, uint32_t lane) {
@@ -302,8 +317,8 @@ WideTree pack_wide_tree(const WideDraft& draft, const TriangleSource& source,
     return tree;
   }
   const Layout layout = make_layout(draft, config, memory, parallel);
-  tree.node_count = layout.nodes.count;
-  tree.leaf_block_count = layout.leaves.count;
+  tree.node_count = layout.nodes.count();
+  tree.leaf_block_count = layout.leaves.count();
   set_frame(draft.boxes[0], tree.view);
   tree.view.root = reference_of(draft.children[0], layout, tree);
   tree.view.has_duplicates = draft.has_duplicates ? 1 : 0;

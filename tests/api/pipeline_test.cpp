@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <limits>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "api/api_support.h"
+#include "support/random.h"
 
 namespace kiwami_api_tests {
 namespace {
@@ -22,8 +26,11 @@ std::vector<uint32_t> methods_of(uint32_t stage) {
   return methods;
 }
 
+using kiwami_tests::Random;
+
 bool makes_no_binary_tree(uint32_t builder) {
-  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN;
+  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN ||
+         builder == KIWAMI_BUILDER_WIDE_LINEAR;
 }
 
 class Pipeline : public testing::Test {
@@ -217,6 +224,75 @@ TEST_F(Pipeline, AQualityStandsForItsMethods) {
     }
   }
   EXPECT_GE(costs.size(), 2u);
+}
+
+void add_triangle(const float corner[3], const float size[3], Random& random,
+                  Triangles& triangles) {
+  for (int k = 0; k < 3; ++k) {
+    triangles.indices.push_back(static_cast<uint32_t>(triangles.vertices.size() / 3));
+    for (int axis = 0; axis < 3; ++axis) {
+      triangles.vertices.push_back(corner[axis] + size[axis] * random.symmetric());
+    }
+  }
+}
+
+/// Long thin triangles side by side: splits from the top serve them better.
+Triangles fibres(uint32_t count, uint64_t seed) {
+  Triangles triangles;
+  Random random(seed);
+  for (uint32_t i = 0; i < count; ++i) {
+    const float corner[] = {random.symmetric(), random.symmetric(), random.symmetric()};
+    add_triangle(corner, std::array{0.01f, 0.01f, 0.4f}.data(), random, triangles);
+  }
+  return triangles;
+}
+
+/// Small objects of many triangles between walls of a few: joining from below keeps them whole.
+Triangles furniture(uint32_t object_count, uint64_t seed) {
+  Triangles triangles;
+  Random random(seed);
+  for (uint32_t i = 0; i < object_count; ++i) {
+    const float centre[] = {random.symmetric(), random.symmetric(), random.symmetric()};
+    const float size = 0.02f + 0.05f * std::abs(random.symmetric());
+    for (int k = 0; k < 60; ++k) {
+      const float corner[] = {centre[0] + size * random.symmetric(),
+                              centre[1] + size * random.symmetric(),
+                              centre[2] + size * random.symmetric()};
+      add_triangle(corner, std::array{0.1f * size, 0.1f * size, 0.1f * size}.data(), random,
+                   triangles);
+    }
+    if (i % 4 == 0) add_triangle(centre, std::array{1.0f, 1.0f, 0.01f}.data(), random, triangles);
+  }
+  return triangles;
+}
+
+TEST_F(Pipeline, TrialKeepsTheTreeThatRaysVisitLess) {
+  const std::vector<kiwami_ray> rays = random_rays(3000, 7);
+  const auto cost_of = [&](const Triangles& triangles, uint32_t builder) {
+    const Geometry mesh = make_mesh(device_, triangles.desc());
+    const Scene scene = make_scene(device_);
+    EXPECT_EQ(kiwami_scene_attach(scene.get(), mesh.get(), nullptr), KIWAMI_OK);
+    set(scene, KIWAMI_PARAMETER_BUILDER, builder);
+    EXPECT_EQ(kiwami_scene_set_representative_rays(scene.get(), rays.data(), 0, rays.size()),
+              KIWAMI_OK);
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error(device_.get());
+    kiwami_visits visits{};
+    visits.struct_size = sizeof visits;
+    EXPECT_EQ(kiwami_scene_count_visits(scene.get(), rays.data(), 0, rays.size(),
+                                        KIWAMI_COUNT_CLOSEST_HIT, &visits, nullptr, 0),
+              KIWAMI_OK);
+    return static_cast<double>(visits.node_visits + visits.leaf_visits);
+  };
+  std::set<bool> winners;
+  for (const Triangles& triangles : {fibres(3000, 3), furniture(50, 5)}) {
+    const double top_down = cost_of(triangles, KIWAMI_BUILDER_BINNED_SAH);
+    const double bottom_up = cost_of(triangles, KIWAMI_BUILDER_PLOC);
+    std::printf("binned_sah %g, ploc %g visits\n", top_down, bottom_up);
+    ASSERT_NE(top_down, bottom_up);
+    EXPECT_EQ(cost_of(triangles, KIWAMI_BUILDER_TRIAL), std::min(top_down, bottom_up));
+    winners.insert(bottom_up < top_down);
+  }
+  EXPECT_EQ(winners.size(), 2u);
 }
 
 TEST_F(Pipeline, WhatIsSetAfterAQualityReplacesItsPart) {

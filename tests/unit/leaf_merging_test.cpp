@@ -30,18 +30,21 @@ class LeafMerging : public testing::Test {
 };
 
 void check(const Array<uint8_t>& sizes, const SharedPlaces& shared, uint32_t width) {
-  std::vector<uint32_t> owned(shared.count, 0);
+  std::vector<uint32_t> owned(shared.count(), 0);
   ASSERT_EQ(shared.places.size(), sizes.size());
   for (size_t i = 0; i < sizes.size(); ++i) {
     const SharedPlace& place = shared.places[i];
-    ASSERT_LT(place.index, shared.count);
+    ASSERT_LT(place.index, shared.count());
     EXPECT_EQ(std::popcount(place.mask), sizes[i]);
     EXPECT_EQ(place.mask, ((1u << sizes[i]) - 1) << place.first);
     EXPECT_EQ(place.mask >> width, 0);
     EXPECT_EQ(owned[place.index] & place.mask, 0u) << "owner " << i;
     owned[place.index] |= place.mask;
   }
-  for (const uint32_t mask : owned) EXPECT_NE(mask, 0u);
+  for (size_t i = 0; i < owned.size(); ++i) {
+    EXPECT_NE(owned[i], 0u);
+    EXPECT_EQ(owned[i], shared.used[i]);
+  }
 }
 
 TEST_F(LeafMerging, MasksAreDisjointAndOfTheirSize) {
@@ -52,7 +55,7 @@ TEST_F(LeafMerging, MasksAreDisjointAndOfTheirSize) {
       for (uint8_t& size : sizes) size = static_cast<uint8_t>(1 + random.below(width));
       const SharedPlaces shared = kiwami::place_shared(sizes, width, ring, memory_);
       check(sizes, shared, width);
-      EXPECT_LT(shared.count, sizes.size());
+      EXPECT_LT(shared.count(), sizes.size());
     }
   }
 }
@@ -61,21 +64,21 @@ TEST_F(LeafMerging, ExactFitsFillEveryNode) {
   const Array<uint8_t> sizes = sizes_of({5, 2, 4, 8, 6, 3, 4, 2, 2, 4});
   const SharedPlaces shared = kiwami::place_shared(sizes, 8, 8, memory_);
   check(sizes, shared, 8);
-  EXPECT_EQ(shared.count, 5u);
+  EXPECT_EQ(shared.count(), 5u);
 }
 
 TEST_F(LeafMerging, OwnersThatNobodyCanJoinStayAlone) {
   const Array<uint8_t> sizes = sizes_of({7, 7, 8, 7, 2});
   const SharedPlaces shared = kiwami::place_shared(sizes, 8, 8, memory_);
   check(sizes, shared, 8);
-  EXPECT_EQ(shared.count, 5u);
+  EXPECT_EQ(shared.count(), 5u);
 }
 
 TEST_F(LeafMerging, ARingOfOneGivesUpTheOpenNode) {
   const Array<uint8_t> sizes = sizes_of({5, 4, 4});
   const SharedPlaces shared = kiwami::place_shared(sizes, 8, 1, memory_);
   check(sizes, shared, 8);
-  EXPECT_EQ(shared.count, 2u);
+  EXPECT_EQ(shared.count(), 2u);
   EXPECT_NE(shared.places[0].index, shared.places[1].index);
   EXPECT_EQ(shared.places[1].index, shared.places[2].index);
 }
@@ -84,7 +87,7 @@ TEST_F(LeafMerging, AGivenUpNodeIsCompletedByAnExactFit) {
   const Array<uint8_t> sizes = sizes_of({5, 4, 4, 6, 3, 2});
   const SharedPlaces shared = kiwami::place_shared(sizes, 8, 1, memory_);
   check(sizes, shared, 8);
-  EXPECT_EQ(shared.count, 3u);
+  EXPECT_EQ(shared.count(), 3u);
   EXPECT_EQ(shared.places[0].index, shared.places[4].index);
 }
 
@@ -101,11 +104,11 @@ TEST_F(LeafMerging, AloneMeansOneNodeEach) {
   const Array<uint8_t> sizes = sizes_of({2, 3, 8});
   const SharedPlaces alone = kiwami::place_alone(sizes, memory_);
   check(sizes, alone, 8);
-  EXPECT_EQ(alone.count, 3u);
+  EXPECT_EQ(alone.count(), 3u);
 }
 
 TEST_F(LeafMerging, NoOwnersNeedNoNodes) {
-  EXPECT_EQ(kiwami::place_shared(Array<uint8_t>(memory_, 0), 8, 8, memory_).count, 0u);
+  EXPECT_EQ(kiwami::place_shared(Array<uint8_t>(memory_, 0), 8, 8, memory_).count(), 0u);
 }
 
 }  // namespace

@@ -446,7 +446,8 @@ BuildOptions build_options_of(uint32_t quality) {
 }
 
 bool makes_wide_tree(uint32_t builder) {
-  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN;
+  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN ||
+         builder == KIWAMI_BUILDER_WIDE_LINEAR;
 }
 
 bool acts_on_wide_tree(uint32_t optimizer) {

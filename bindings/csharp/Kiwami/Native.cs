@@ -844,6 +844,8 @@ internal static class Native {
   public const uint KIWAMI_BUILDER_STR = 10;
   public const uint KIWAMI_BUILDER_TRBVH = 11;
   public const uint KIWAMI_BUILDER_WIDE_TOP_DOWN = 12;
+  public const uint KIWAMI_BUILDER_WIDE_LINEAR = 13;
+  public const uint KIWAMI_BUILDER_TRIAL = 14;
   public const uint KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1;
   public const uint KIWAMI_OPTIMIZER_ROTATION = 2;
   public const uint KIWAMI_OPTIMIZER_TREELET = 3;

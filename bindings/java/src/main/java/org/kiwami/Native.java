@@ -89,6 +89,8 @@ final class Native {
   static final int KIWAMI_BUILDER_STR = 10;
   static final int KIWAMI_BUILDER_TRBVH = 11;
   static final int KIWAMI_BUILDER_WIDE_TOP_DOWN = 12;
+  static final int KIWAMI_BUILDER_WIDE_LINEAR = 13;
+  static final int KIWAMI_BUILDER_TRIAL = 14;
   static final int KIWAMI_OPTIMIZER_PARALLEL_REINSERTION = 1;
   static final int KIWAMI_OPTIMIZER_ROTATION = 2;
   static final int KIWAMI_OPTIMIZER_TREELET = 3;
