@@ -14,6 +14,7 @@
 #include "instances.h"
 #include "io.h"
 #include "light.h"
+#include "moving_instances.h"
 #include "moving_mesh.h"
 #include "opacity.h"
 #include "scene.h"

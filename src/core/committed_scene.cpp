@@ -257,7 +257,7 @@ void CommittedScene::describe() {
   const SceneInstances& instances = parts_.instances();
   info_.instance_count = instances.count();
   info_.instance_depth = instances.depth();
-  info_.instance_tree_bytes = instances.tree().node_bytes() + instances.tree().leaf_bytes();
+  info_.instance_tree_bytes = instances.tree_bytes();
   info_.struct_size = sizeof(info_);
   info_.bvh_width = tree_.width;
   info_.leaf_width = tree_.leaf_width;

@@ -21,24 +21,8 @@ constexpr double kLeastRounding = 0x1p-146;
 /// both are quotients and products of three roundings, of numbers that are at most 128 segments.
 constexpr double kTimeRounding = 0x1p-12;
 
-bool are_same(const TimeSteps& a, const TimeSteps& b) {
-  return a.begin == b.begin && a.end == b.end && a.segment_count == b.segment_count;
-}
-
 double time_of(const TimeSteps& steps, double segment) {
   return steps.begin + (double{steps.end} - steps.begin) * (segment / steps.segment_count);
-}
-
-/// Widens a box by the rounding of its coordinates and of boxes of the scene's extent.
-void pad(Bounds& box, const Bounds& extent) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double greatest =
-        std::max(std::fabs(double{extent.lower[axis]}), std::fabs(double{extent.upper[axis]}));
-    const double width = double{extent.upper[axis]} - extent.lower[axis];
-    const double padding = kMotionRounding * (greatest + width) + kLeastRounding;
-    box.lower[axis] = round_down(box.lower[axis] - padding);
-    box.upper[axis] = round_up(box.upper[axis] + padding);
-  }
 }
 
 /// Adds where the triangle is at a place among its mesh's steps, 0 to segment_count.
@@ -60,23 +44,61 @@ void extend_at(Bounds& box, const MovingMeshView& mesh, uint32_t primitive, doub
 /// Where the triangle is at any time of a segment of other steps.
 Bounds swept_box(const MovingMeshView& mesh, uint32_t primitive, const TimeSteps& steps,
                  uint32_t segment) {
-  const double count = mesh.time.segment_count;
-  const auto place_of = [&](double time) {
-    return (time - mesh.time.begin) / (double{mesh.time.end} - mesh.time.begin) * count;
-  };
-  const double first = place_of(time_of(steps, segment - kTimeRounding));
-  const double last = place_of(time_of(steps, segment + 1.0 + kTimeRounding));
   Bounds box = Bounds::empty();
-  if (last < 0.0 || first > count) return box;
-  extend_at(box, mesh, primitive, std::max(first, 0.0));
-  extend_at(box, mesh, primitive, std::min(last, count));
-  for (double key = std::ceil(std::max(first, 0.0)); key <= std::min(last, count); key += 1.0) {
+  PlaceRange range;
+  if (!places_during(mesh.time, steps, segment, range)) return box;
+  extend_at(box, mesh, primitive, range.first);
+  extend_at(box, mesh, primitive, range.last);
+  for (double key = std::ceil(range.first); key <= range.last; key += 1.0) {
     box.extend(box_at(mesh, primitive, static_cast<uint32_t>(key)));
   }
   return box;
 }
 
 }  // namespace
+
+void pad(Bounds& box, const Bounds& extent) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double greatest =
+        std::max(std::fabs(double{extent.lower[axis]}), std::fabs(double{extent.upper[axis]}));
+    const double width = double{extent.upper[axis]} - extent.lower[axis];
+    const double padding = kMotionRounding * (greatest + width) + kLeastRounding;
+    box.lower[axis] = round_down(box.lower[axis] - padding);
+    box.upper[axis] = round_up(box.upper[axis] + padding);
+  }
+}
+
+bool are_same(const TimeSteps& a, const TimeSteps& b) {
+  return a.begin == b.begin && a.end == b.end && a.segment_count == b.segment_count;
+}
+
+bool places_during(const TimeSteps& own, const TimeSteps& steps, uint32_t segment,
+                   PlaceRange& range) {
+  const double count = own.segment_count;
+  const auto place_of = [&](double time) {
+    return (time - own.begin) / (double{own.end} - own.begin) * count;
+  };
+  range.first = place_of(time_of(steps, segment - kTimeRounding));
+  range.last = place_of(time_of(steps, segment + 1.0 + kTimeRounding));
+  if (range.last < 0.0 || range.first > count) return false;
+  range.first = std::max(range.first, 0.0);
+  range.last = std::min(range.last, count);
+  return true;
+}
+
+TriangleMeshView first_step_of(const MovingMeshView& mesh) {
+  TriangleMeshView view{};
+  view.vertices = mesh.vertices;
+  view.vertex_stride = mesh.vertex_stride;
+  view.vertex_count = mesh.vertex_count;
+  view.indices = mesh.indices;
+  view.index_stride = mesh.index_stride;
+  view.triangle_count = mesh.triangle_count;
+  view.first_id = mesh.first_id;
+  view.geometry_id = mesh.geometry_id;
+  view.mask = mesh.mask;
+  return view;
+}
 
 void corners_at(const MovingMeshView& mesh, uint32_t primitive, uint32_t step, Vec3f corner[3]) {
   uint32_t index[3] = {3 * primitive, 3 * primitive + 1, 3 * primitive + 2};
@@ -95,15 +117,6 @@ Bounds box_at(const MovingMeshView& mesh, uint32_t primitive, uint32_t step) {
   Bounds box = Bounds::empty();
   for (const Vec3f& vertex : corner) box.extend(vertex);
   return box;
-}
-
-bool place_in_time(const TimeSteps& steps, float time, TimePlace& place) {
-  if (!(steps.begin <= time && time <= steps.end)) return false;
-  const float count = static_cast<float>(steps.segment_count);
-  const float s = (time - steps.begin) / (steps.end - steps.begin) * count;
-  place.segment = static_cast<uint32_t>(std::min(s, count - 1.0f));
-  place.fraction = s - static_cast<float>(place.segment);
-  return true;
 }
 
 void corners_at(const MovingMeshView& mesh, uint32_t primitive, const TimePlace& place,

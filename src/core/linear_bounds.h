@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes that move linearly over a segment of time, around triangles that move.
+// Boxes that move linearly over a segment of time, around what moves.
 #pragma once
 
+#include "bvh/triangle_source.h"
 #include "math/bounds.h"
 #include "wide/motion_part.h"
 
@@ -17,14 +18,30 @@ struct LinearBounds {
   }
 };
 
+/// Widens a box by the rounding of vertices and boxes at a time, in a scene that reaches as far as
+/// extent.
+void pad(Bounds& box, const Bounds& extent);
+
+bool are_same(const TimeSteps& a, const TimeSteps& b);
+
+/// Places among some steps, 0 to segment_count.
+struct PlaceRange {
+  double first, last;
+};
+
+/// Where a segment of other steps lies among own ones, with room for the rounding of both; false:
+/// nowhere.
+bool places_during(const TimeSteps& own, const TimeSteps& steps, uint32_t segment,
+                   PlaceRange& range);
+
+/// A moving mesh as that of its first step.
+TriangleMeshView first_step_of(const MovingMeshView& mesh);
+
 /// The corners of a triangle at a step.
 void corners_at(const MovingMeshView& mesh, uint32_t primitive, uint32_t step, Vec3f corner[3]);
 
 /// The box of a triangle at a step.
 Bounds box_at(const MovingMeshView& mesh, uint32_t primitive, uint32_t step);
-
-/// As kernels/motion-inl.h: false where a time lies outside.
-bool place_in_time(const TimeSteps& steps, float time, TimePlace& place);
 
 /// The corners of a triangle at a place in its mesh's time, as the kernels compute them.
 void corners_at(const MovingMeshView& mesh, uint32_t primitive, const TimePlace& place,

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "core/moving_mesh.h"
-#include "core/part_tree.h"
+#include "core/moving_tree.h"
 #include "wide/motion_part.h"
 
 namespace kiwami {
 
 /// The moving triangles of a scene, the tree over them, and its boxes at all times.
-class MotionTree {
+class MotionTree final : private MovingSource {
  public:
   MotionTree() = default;
   MotionTree(const MotionTree&) = delete;
@@ -20,7 +20,7 @@ class MotionTree {
   /// Points into this object.
   ScenePart view() const;
   /// Its bounds hold the triangles at all times.
-  const PartTree& tree() const { return tree_; }
+  const PartTree& tree() const { return tree_.tree(); }
   /// Triangles of all these meshes, skipped ones included.
   size_t numbered_count() const { return numbered_count_; }
 
@@ -32,17 +32,16 @@ class MotionTree {
   void number(const AttachedGeometry* geometries, size_t count, Memory& memory);
   /// The mean boxes of those triangles that can be hit; extent becomes the box of all at all times.
   Array<BuildPrimitive> collect(Memory& memory, const Parallel& parallel, Bounds& extent) const;
-  template <int N>
-  void fill_bounds(Memory& memory, const Parallel& parallel);
-  template <int N>
-  void check_bounds(const Parallel& parallel) const;
+  LinearBounds during(uint32_t id, uint32_t segment) const override;
+  Bounds at(uint32_t id, float time) const override;
 
   Array<MovingMeshView> meshes_;
   Array<GeometryRange> ranges_;
-  Array<unsigned char> bounds_;
+  TimeSteps time_{};
+  Bounds extent_ = Bounds::empty();  ///< of all triangles at all times
   MotionPart data_{};
   size_t numbered_count_ = 0;
-  PartTree tree_;
+  MovingTree tree_;
 };
 
 }  // namespace kiwami

@@ -30,7 +30,6 @@ class MovingMesh final : public Geometry {
  private:
   void end(Memory& memory) noexcept override { destroy_object(memory, this); }
   void copy_buffers();
-  void check_indices() const;
 
   Array<unsigned char> vertices_, indices_;
   MovingMeshView view_{};

@@ -1,33 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why every hit is found
-//
-// A ray o + t d meets instances by their boxes in the outer space, and what they show by the ray
-// o' + t d' in the space of their scene. Let B x + b be the map into that space, as the floats of
-// the record have it, F its inverse, and |.| the greatest absolute coordinate or the row sum norm.
-// The record's floats are what counts: boxes are made of F, whatever the rounding of the inverse.
-//
-// A hit at t in the instanced scene is at a point P' of what was hit plus an error e', that is o' +
-// t d' = P' + e'. With the roundings r and s of o' = B o + b + r, |r| <= 4 u (|B| |o| + |b|), and
-// d' = B d + s, |s| <= 3 u |B| |d|, the point on the outer ray is
-//   o + t d = F (P' - b) + F (e' - r - t s),
-// where F (P' - b) lies in the instance's box. So along each axis it is outside by at most
-//   |F| (|e'| + 4 u (|B| |o| + |b|) + 3 u |B| t |d|).
-// By induction over the levels, |e'| <= u (p' |o'| + f') with the HitError of the instanced scene,
-// |o'| <= |B| |o| + |b|, and t |d| is at most |o| + Q plus the error itself, Q being the greatest
-// coordinate of the box. With the condition number k = |F| |B|, this is a HitError again:
-//   per_origin = k (p' + 7),   fixed = |F| ((p' + 4) |b| + f' + 3 |B| Q),
-// times 1.25: the error that stands on the right is at most 3 u k < 3/16 of the whole (k <= 2^20),
-// and what remains is for products of errors and for F, whose double entries are off by far less.
-//
-// The tree's boxes are those of the instances, wider by that error for origins up to far_origin;
-// for rays that start farther away the kernels widen the slabs by per_origin times what is beyond.
 #include "core/scene_instances.h"
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cmath>
-#include <limits>
 
 #include "core/committed_scene.h"
 #include "core/error.h"
@@ -43,40 +19,7 @@ constexpr size_t kBlockSize = 4096;
 /// Numbers are 32 bits wide, and their highest value names nothing.
 constexpr uint64_t kMaxInstanceCount = 0xFFFFFFFEu;
 
-constexpr double kUnit = 0x1p-24;
-constexpr double kSafety = 1.25;
-/// Products of the transform may be denormal.
-constexpr double kLeastError = 0x1p-100;
-/// Boxes end here: nothing beyond KIWAMI_MAX_COORDINATE is promised to be hit.
-constexpr double kMaxBound = 2.0 * double{KIWAMI_MAX_COORDINATE};
-
 using ull = unsigned long long;
-
-double greatest_coordinate(const Bounds& bounds) {
-  double greatest = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    greatest = std::max(
-        {greatest, std::fabs(double{bounds.lower[axis]}), std::fabs(double{bounds.upper[axis]})});
-  }
-  return greatest;
-}
-
-/// The box of a box's image, wider by a margin and rounded outwards.
-Bounds image_of(const Affine& map, const Bounds& box, double margin) {
-  Bounds image;
-  for (int row = 0; row < 3; ++row) {
-    double lower = map.column[3][row], upper = lower;
-    for (int k = 0; k < 3; ++k) {
-      const double a = map.column[k][row] * double{box.lower[k]};
-      const double b = map.column[k][row] * double{box.upper[k]};
-      lower += std::min(a, b);
-      upper += std::max(a, b);
-    }
-    image.lower[row] = round_down(std::clamp(lower - margin, -kMaxBound, kMaxBound));
-    image.upper[row] = round_up(std::clamp(upper + margin, -kMaxBound, kMaxBound));
-  }
-  return image;
-}
 
 /// Calls visit(instances, geometry_id) for each geometry that is instances.
 template <typename Visit>
@@ -133,16 +76,6 @@ SceneParameters for_instances(SceneParameters parameters) {
 
 }  // namespace
 
-void HitError::extend(const HitError& other) {
-  per_origin = std::max(per_origin, other.per_origin);
-  fixed = std::max(fixed, other.fixed);
-}
-
-HitError HitError::of_triangles(const Bounds& bounds) {
-  if (bounds.is_empty()) return {};
-  return {18.0, 18.0 * 2.001 * greatest_coordinate(bounds) + kLeastError / kUnit};
-}
-
 /// What one instance shows: the box of it, and the error of hits there.
 struct SceneInstances::Extent {
   Affine forward;
@@ -172,8 +105,9 @@ void SceneInstances::build(const AttachedGeometry* geometries, size_t count, con
   data_ = {records_.data(), prototypes_.data(), masks_.empty() ? nullptr : masks_.data(),
            starts_.empty() ? nullptr : starts_.data()};
   const SceneParameters parameters = for_instances(plan.parameters);
-  tree_ = build_part_tree(boxes_of(references, !starts_.empty(), plan.memory),
-                          {parameters, plan.width, plan.memory, plan.parallel});
+  const PartPlan own_plan{parameters, plan.width, plan.memory, plan.parallel};
+  tree_ = build_part_tree(boxes_of(references, !starts_.empty(), plan.memory), own_plan);
+  moving_.build(data_, scenes_.data(), own_plan);
 }
 
 void SceneInstances::collect_prototypes(const AttachedGeometry* geometries, size_t count,
@@ -200,10 +134,15 @@ void SceneInstances::collect_prototypes(const AttachedGeometry* geometries, size
 void SceneInstances::fill_records(const AttachedGeometry* geometries, size_t count, Memory& memory,
                                   const Parallel& parallel) {
   uint64_t record_count = 0;
+  size_t moving_count = 0, step_floats = 0;
   bool has_masks = false;
   for_each_instances(geometries, count, [&](const Instances& instances, uint32_t geometry_id) {
     record_count += instances.count();
     has_masks = has_masks || instances.has_masks();
+    if (instances.is_moving()) {
+      ++moving_count;
+      step_floats += MovingInstances::step_floats_of(instances);
+    }
     if (record_count <= kMaxInstanceCount) return;
     throw Error(KIWAMI_ERROR_TOO_LARGE,
                 "the scene has %llu instances up to geometry %u, expected at most %llu",
@@ -211,6 +150,7 @@ void SceneInstances::fill_records(const AttachedGeometry* geometries, size_t cou
   });
   records_ = Array<InstanceRecord>(memory, static_cast<size_t>(record_count));
   if (has_masks) masks_ = Array<uint32_t>(memory, static_cast<size_t>(record_count));
+  moving_.reserve(memory, moving_count, step_floats);
   size_t first = 0;
   uint32_t first_prototype = 0;
   for_each_instances(geometries, count, [&](const Instances& instances, uint32_t) {
@@ -219,17 +159,20 @@ void SceneInstances::fill_records(const AttachedGeometry* geometries, size_t cou
       for (size_t i = begin; i < end; ++i) {
         const auto instance = static_cast<uint32_t>(i);
         const uint32_t scene_index = instances.scene_index(instance);
-        InstanceTransform transform;
-        if (scene_index >= instances.scene_count() || !instances.invert(instance, transform)) {
+        InstanceRecord& record = records_[first + i];
+        record = {};
+        if (scene_index >= instances.scene_count() ||
+            !(instances.is_moving() || instances.invert(instance, record.column))) {
           is_faulty.store(true, std::memory_order_relaxed);
           return;
         }
-        InstanceRecord& record = records_[first + i];
-        std::copy_n(&transform.inverse[0][0], 12, &record.column[0][0]);
         record.prototype = first_prototype + scene_index;
         if (has_masks) masks_[first + i] = instances.instance_mask(instance);
       }
     });
+    if (instances.is_moving() && !moving_.add(instances, static_cast<uint32_t>(first), parallel)) {
+      is_faulty.store(true);
+    }
     // Shared buffers may have changed since they were checked.
     if (is_faulty.load()) instances.check_instances();
     first += instances.count();
@@ -243,19 +186,9 @@ SceneInstances::Extent SceneInstances::extent_of(uint32_t instance) const {
   Extent extent;
   extent.inner = extent.bounds = scene.bounds();
   if (extent.inner.is_empty()) return extent;
-  const InstanceTransform transform = transform_of(record.column);
-  const double b =
-      std::max({std::fabs(double{record.column[3][0]}), std::fabs(double{record.column[3][1]}),
-                std::fabs(double{record.column[3][2]})});
-  const HitError& inner = scene.hit_error();
-  extent.forward = transform.forward;
-  extent.bounds = image_of(transform.forward, extent.inner, 0.0);
-  extent.error.per_origin =
-      kSafety * transform.forward_norm * transform.inverse_norm * (inner.per_origin + 7.0);
-  extent.error.fixed =
-      kSafety * transform.forward_norm *
-      ((inner.per_origin + 4.0) * b + inner.fixed +
-       3.0 * transform.inverse_norm * greatest_coordinate(extent.bounds) + kLeastError / kUnit);
+  extent.forward = transform_of(record.column).forward;
+  extent.bounds = image_of(extent.forward, extent.inner, 0.0);
+  extent.error = HitError::through(record.column, scene.hit_error(), extent.bounds);
   return extent;
 }
 
@@ -268,6 +201,7 @@ void SceneInstances::measure(Memory& memory, const Parallel& parallel) {
   parallel.for_blocks(records_.size(), kBlockSize, [&](size_t begin, size_t end) {
     Sum sum{Bounds::empty(), {}};
     for (size_t i = begin; i < end; ++i) {
+      if (moving_.contains(static_cast<uint32_t>(i))) continue;
       const Extent extent = extent_of(static_cast<uint32_t>(i));
       sum.bounds.extend(extent.bounds);
       sum.error.extend(extent.error);
@@ -286,10 +220,15 @@ class SceneInstances::Trees final : public BraidSource {
  public:
   explicit Trees(const SceneInstances& all) : all_(all) {}
 
+  /// Of a whole instance, with an empty box.
+  static BraidReference nothing_of(uint32_t instance) {
+    return {Bounds::empty(), {instance, InstanceStart::kAllTrees, {}}, 0.0f, true};
+  }
+
   /// Of a whole instance; its box is empty where it shows nothing.
   BraidReference root_of(uint32_t instance) const {
     const CommittedScene& scene = scene_of(instance);
-    BraidReference root{Bounds::empty(), {instance, InstanceStart::kAllTrees, {}}, 0.0f, true};
+    BraidReference root = nothing_of(instance);
     root.weight = static_cast<float>(std::max<uint64_t>(scene.primitive_count(), 1));
     const Extent extent = all_.extent_of(instance);
     if (!extent.inner.is_empty()) root.box = box_of(extent, extent.inner);
@@ -320,9 +259,7 @@ class SceneInstances::Trees final : public BraidSource {
 
   /// The image of a box of the scene, with room for the error of hits.
   Bounds box_of(const Extent& extent, const Bounds& inner) const {
-    const double error =
-        kUnit * (extent.error.per_origin * double{all_.far_origin_} + extent.error.fixed);
-    return image_of(extent.forward, inner, error);
+    return image_of(extent.forward, inner, extent.error.margin(double{all_.far_origin_}));
   }
 
   uint32_t open_trees(const BraidReference& reference, const Extent& extent, const SceneView& view,
@@ -346,12 +283,12 @@ class SceneInstances::Trees final : public BraidSource {
   }
 
   /// Opens a node of one of the scene's trees, by the number that references have for it: 0 is that
-  /// of the triangles, i + 1 that of part i. Where triangles move, the boxes of nodes are those of
+  /// of the triangles, i + 1 that of part i. Where things move, the boxes of nodes are those of
   /// the middle of their way, and hold them at no other time: their tree stays whole.
   uint32_t open_tree(const BraidReference& reference, const Extent& extent, const SceneView& view,
                      uint32_t number, ChildReference subtree,
                      BraidReference (&children)[kMaxChildren]) const {
-    if (number != 0 && view.parts[number - 1].kind == PartKind::kMovingTriangles) return 0;
+    if (number != 0 && has_moving_boxes(view.parts[number - 1].kind)) return 0;
     return open_node(reference, extent, number == 0 ? view.tree : view.parts[number - 1].tree,
                      number, subtree, children);
   }
@@ -394,13 +331,17 @@ class SceneInstances::Trees final : public BraidSource {
   const SceneInstances& all_;
 };
 
-/// Of the instances that show something, by rising number; or what they are opened into.
+/// Of the instances that rest and show something, by rising number; or what they are opened into.
 Array<BraidReference> SceneInstances::make_references(Memory& memory,
                                                       const Parallel& parallel) const {
   const Trees trees(*this);
   Array<BraidReference> references(memory, records_.size());
   parallel.for_blocks(records_.size(), kBlockSize, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) references[i] = trees.root_of(static_cast<uint32_t>(i));
+    for (size_t i = begin; i < end; ++i) {
+      const auto instance = static_cast<uint32_t>(i);
+      references[i] =
+          moving_.contains(instance) ? trees.nothing_of(instance) : trees.root_of(instance);
+    }
   });
   size_t used = 0;
   for (const BraidReference& reference : references) {
@@ -412,12 +353,11 @@ Array<BraidReference> SceneInstances::make_references(Memory& memory,
 }
 
 ScenePart SceneInstances::part() const {
-  const double margin = kUnit * 1.001 * error_.per_origin;
-  return {PartKind::kInstances, tree_.tree.view, &data_, far_origin_,
-          static_cast<float>(std::min(margin, double{std::numeric_limits<float>::max()}))};
+  return {PartKind::kInstances, tree_.tree.view, &data_, far_origin_, far_origin_margin_of(error_)};
 }
 
 void SceneInstances::validate(Memory& memory, const Parallel& parallel) const {
+  moving_.validate(scenes_.data(), memory, parallel);
   if (!can_be_hit()) return;
   const Array<BraidReference> references = make_references(memory, parallel);
   const Array<BuildPrimitive> boxes = boxes_of(references, !starts_.empty(), memory);

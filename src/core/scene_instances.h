@@ -3,8 +3,10 @@
 #pragma once
 
 #include "bvh/binary_bvh.h"
+#include "core/instance_bounds.h"
 #include "core/instances.h"
 #include "core/memory.h"
+#include "core/moving_instances.h"
 #include "core/part_tree.h"
 #include "math/bounds.h"
 #include "optimizers/rebraiding.h"
@@ -14,18 +16,6 @@
 namespace kiwami {
 
 class CommittedScene;
-
-/// How far from what it hit the point of a hit may lie, along any axis: 2^-24 (per_origin o +
-/// fixed), o being the greatest absolute coordinate of the ray's origin.
-struct HitError {
-  double per_origin = 0.0;
-  double fixed = 0.0;
-
-  void extend(const HitError& other);
-  /// Of triangles in a box. See kMargin in kernels/ray-inl.h: 9 (M_a + S_a M_kz), where M is at
-  /// most the origin's coordinate and twice the box's greatest, and S at most 1.
-  static HitError of_triangles(const Bounds& bounds);
-};
 
 /// The records of all instances, the tree over their boxes, and the scenes that they show.
 class SceneInstances {
@@ -40,13 +30,27 @@ class SceneInstances {
 
   bool empty() const { return records_.empty(); }
   size_t count() const { return records_.size(); }
-  const WideTree& tree() const { return tree_.tree; }
+  /// Those that move have a tree of their own.
+  const MovingInstances& moving() const { return moving_; }
+  size_t tree_bytes() const {
+    return tree_.tree.node_bytes() + tree_.tree.leaf_bytes() + moving_.tree_bytes();
+  }
+  /// Whether one can that rests.
   bool can_be_hit() const { return !tree_.is_empty(); }
   /// What the instances show; empty where that is nothing.
-  const Bounds& bounds() const { return bounds_; }
-  const HitError& error() const { return error_; }
+  Bounds bounds() const {
+    Bounds bounds = bounds_;
+    bounds.extend(moving_.bounds());
+    return bounds;
+  }
+  HitError error() const {
+    HitError error = error_;
+    error.extend(moving_.error());
+    return error;
+  }
   /// The instances on the longest path to a hit.
   uint32_t depth() const { return depth_; }
+  /// Of those that rest.
   ScenePart part() const;
 
   /// Throws Error(VALIDATION).
@@ -75,6 +79,7 @@ class SceneInstances {
   RebraidConfig rebraid_config_;
   PartTree tree_;
   InstancePart data_{};
+  MovingInstances moving_;
   Bounds bounds_ = Bounds::empty();
   HitError error_;
   uint32_t depth_ = 0;

@@ -6,6 +6,7 @@ namespace kiwami {
 void SceneParts::build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan) {
   instances_.build(geometries, count, plan);
   if (instances_.can_be_hit()) views_[count_++] = instances_.part();
+  if (instances_.moving().can_be_hit()) views_[count_++] = instances_.moving().part();
   for (ShapePart& part : shapes_) {
     part.build(geometries, count, plan);
     add(part.tree(), part.view());

@@ -42,7 +42,7 @@ class SceneParts {
                           ShapePart(ShapeKind::kCurve)};
   UserPart user_;
   MotionTree motion_;
-  ScenePart views_[7];
+  ScenePart views_[8];
   uint32_t count_ = 0;
 };
 

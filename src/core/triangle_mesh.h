@@ -44,7 +44,6 @@ class TriangleMesh final : public Geometry {
  private:
   void end(Memory& memory) noexcept override { destroy_object(memory, this); }
   void copy_buffers();
-  void check_indices() const;
 
   Reference<FileImage> image_;
   // None for shared vertices; those in a file are borrowed. The spare one takes the next vertices

@@ -31,6 +31,15 @@ inline void set_up_for_part(const UnalignedRay& ray, const ScenePart& part, Read
   }
 }
 
+/// Puts the transform of a moving instance at a time into a record; false where there is none.
+// Not inlined: it stands in each query.
+__attribute__((noinline)) bool freeze(const MovingInstancePart& part, uint32_t number, float time,
+                                      InstanceRecord& record) {
+  float rows[12];
+  return matrix_at(array_of(part.arrays, part.array_count, number), number, time, rows) &&
+         invert_for_rays(rows, record.column);
+}
+
 /// The ray in the space of an instanced scene. Not normalised: a distance stays the same number.
 inline kiwami_ray transform(const InstanceRecord& instance, const UnalignedRay& ray) {
   const auto column = [&](int k) { return load_from_bytes<4>(instance.column[k]); };
@@ -117,12 +126,10 @@ struct GeneralTraversal {
       }
       case PartKind::kMovingTriangles: {
         const auto& motion = *static_cast<const MotionPart*>(part.data);
-        TimePlace place;
-        if (!place_in_time(motion.time, ray.time, place)) return false;
+        MovingBoxReader<N> boxes;
+        if (!boxes.begin(motion.boxes, ray.time)) return false;
         query.set_level(motion.scene, ready, query.reach());
-        const auto* const bounds = reinterpret_cast<const MotionBounds<N>*>(motion.bounds);
-        MotionVisitor visitor{query,    motion,         bounds + place.segment * motion.node_count,
-                              ray.time, place.fraction, query.best_bound};
+        MotionVisitor visitor{query, motion, boxes, ray.time, query.best_bound};
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
       case PartKind::kUser: {
@@ -135,6 +142,15 @@ struct GeneralTraversal {
       case PartKind::kMeshes: {
         MeshVisitor visitor{*this, scene, *static_cast<const MeshPart*>(part.data),
                             ray,   ready, query.best_bound};
+        return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
+      }
+      case PartKind::kMovingInstances: {
+        const auto& moving = *static_cast<const MovingInstancePart*>(part.data);
+        MovingBoxReader<N> boxes;
+        if (!boxes.begin(moving.boxes, ray.time)) return false;
+        MovingInstanceVisitor visitor(
+            InstanceVisitor{*this, scene, moving.instances, ray, ready, query.best_bound}, moving,
+            boxes);
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
     }
@@ -183,17 +199,20 @@ struct GeneralTraversal {
         const uint32_t id = block.id[__builtin_ctz(lanes)];
         const InstanceStart start =
             part.starts ? part.starts[id] : InstanceStart{id, InstanceStart::kAllTrees, {}};
-        if (visit_instance(start)) return true;
+        const InstanceRecord& instance = part.instances[start.instance];
+        if (is_seen(start.instance, instance) && visit_instance(start, instance)) return true;
       }
       return false;
     }
 
-    bool visit_instance(const InstanceStart& start) {
+    bool is_seen(uint32_t number, const InstanceRecord& instance) const {
+      const uint32_t mask = part.prototypes[instance.prototype].mask;
+      return (ray.mask & (part.masks ? part.masks[number] & mask : mask)) != 0;
+    }
+
+    bool visit_instance(const InstanceStart& start, const InstanceRecord& instance) {
       const uint32_t number = start.instance;
-      const InstanceRecord& instance = part.instances[number];
       const Prototype& prototype = part.prototypes[instance.prototype];
-      const uint32_t mask = part.masks ? part.masks[number] & prototype.mask : prototype.mask;
-      if ((ray.mask & mask) == 0) return false;
       const kiwami_ray local = transform(instance, ray);
       if (!is_traceable(local)) return false;
       Query& asked = traversal.query;
@@ -205,6 +224,34 @@ struct GeneralTraversal {
       if (is_done) return true;
       asked.set_level(scene, ready, asked.reach());
       best_bound = asked.best_bound;
+      return false;
+    }
+  };
+
+  /// The same of instances that move, at the time of the ray.
+  struct MovingInstanceVisitor : InstanceVisitor {
+    const MovingInstancePart& moving;
+    MovingBoxReader<N> boxes;
+
+    MovingInstanceVisitor(const InstanceVisitor& visitor, const MovingInstancePart& moving_part,
+                          const MovingBoxReader<N>& boxes_then)
+        : InstanceVisitor(visitor), moving(moving_part), boxes(boxes_then) {}
+
+    uint32_t test_boxes(ChildReference node, const SlabRay<N>& slabs, vfloat<N>& entry) const {
+      return boxes.test(node, slabs, this->best_bound, entry);
+    }
+
+    bool visit_block(const TreeView& tree, ChildReference reference, Probe&) {
+      const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, reference);
+      for (uint32_t lanes = reference.mask(); lanes; lanes &= lanes - 1) {
+        const uint32_t number = block.id[__builtin_ctz(lanes)];
+        InstanceRecord frozen;
+        frozen.prototype = moving.instances.instances[number].prototype;
+        if (this->is_seen(number, frozen) && freeze(moving, number, this->ray.time, frozen) &&
+            this->visit_instance({number, InstanceStart::kAllTrees, {}}, frozen)) {
+          return true;
+        }
+      }
       return false;
     }
   };
@@ -239,13 +286,12 @@ struct GeneralTraversal {
 
     Query& query;
     const MotionPart& motion;
-    const MotionBounds<N>* bounds;  ///< of the segment of time
-    float time, fraction;
+    MovingBoxReader<N> boxes;
+    float time;
     float best_bound;
 
     uint32_t test_boxes(ChildReference node, const SlabRay<N>& slabs, vfloat<N>& entry) const {
-      return test_moving_boxes(bounds[node.node_offset() / sizeof(WideNode<N>)], fraction, slabs,
-                               best_bound, entry);
+      return boxes.test(node, slabs, best_bound, entry);
     }
 
     bool visit_block(const TreeView& tree, ChildReference reference, Probe& counting) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moving triangles: boxes and vertices at the time of the ray.
+// What moves: boxes and vertices at the time of the ray.
 //
 // Boxes move with what they hold, linearly over a segment of time, as those of S. Woop, A. Afra,
 // C. Benthin, "STBVH: A Spatial-Temporal BVH for Efficient Multi-Segment Motion Blur", HPG 2017. It
@@ -14,18 +14,7 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
 
-/// False where a time lies outside, or is NaN.
-inline bool place_in_time(const TimeSteps& steps, float time, TimePlace& place) {
-  if (!(steps.begin <= time && time <= steps.end)) return false;
-  const float last = static_cast<float>(steps.segment_count - 1);
-  const float s =
-      (time - steps.begin) / (steps.end - steps.begin) * static_cast<float>(steps.segment_count);
-  place.segment = static_cast<uint32_t>(s < last ? s : last);
-  place.fraction = s - static_cast<float>(place.segment);
-  return true;
-}
-
-/// As test_boxes, of the boxes at a time. Their rounding is in the boxes (core/motion_part.cpp).
+/// As test_boxes, of the boxes at a time. Their rounding is in the boxes (core/linear_bounds.cpp, core/instance_bounds.cpp).
 template <int N>
 __attribute__((always_inline)) inline uint32_t test_moving_boxes(const MotionBounds<N>& node,
                                                                  float fraction,
@@ -50,6 +39,27 @@ __attribute__((always_inline)) inline uint32_t test_moving_boxes(const MotionBou
       min(min(far_distance(0), far_distance(1)), min(far_distance(2), broadcast<N>(best)));
   return less_equal(entry, exit);
 }
+
+/// The boxes of one segment of time. False where a time lies outside of all.
+template <int N>
+struct MovingBoxReader {
+  const MotionBounds<N>* bounds;
+  float fraction;
+
+  bool begin(const MovingBoxes& boxes, float time) {
+    TimePlace place;
+    if (!place_in_time(boxes.time, time, place)) return false;
+    bounds =
+        reinterpret_cast<const MotionBounds<N>*>(boxes.bounds) + place.segment * boxes.node_count;
+    fraction = place.fraction;
+    return true;
+  }
+
+  uint32_t test(ChildReference node, const SlabRay<N>& slabs, float best, vfloat<N>& entry) const {
+    return test_moving_boxes(bounds[node.node_offset() / sizeof(WideNode<N>)], fraction, slabs,
+                             best, entry);
+  }
+};
 
 inline const MovingMeshView& mesh_of(const MotionPart& part, uint32_t id) {
   uint32_t low = 0, high = part.mesh_count;

@@ -2,6 +2,8 @@
 // What a kernel needs of the instances of a scene.
 #pragma once
 
+#include "wide/instance_transform.h"
+#include "wide/moving_boxes.h"
 #include "wide/wide_bvh.h"
 
 namespace kiwami {
@@ -37,5 +39,53 @@ struct InstancePart {
   const uint32_t* masks;        ///< of each instance; nullptr: all ones
   const InstanceStart* starts;  ///< nullptr: each instance starts with all
 };
+
+/// An array of instances that move. Plain data.
+struct MovingArray {
+  const float* steps;  ///< step_size_of(format) floats each, instance after instance
+  TimeSteps time;
+  TransformFormat format;
+  uint32_t first;  ///< the number of its first instance
+  uint32_t count;
+};
+
+/// The instances that move, in the leaves of a tree of their own by their numbers. Plain data.
+struct MovingInstancePart {
+  InstancePart instances;     ///< all, of which those that move have no transforms here
+  const MovingArray* arrays;  ///< by rising first
+  uint32_t array_count;
+  MovingBoxes boxes;
+};
+
+// Always inlined: objects of several instruction sets must not share one copy.
+
+/// The array of an instance that moves.
+__attribute__((always_inline)) inline const MovingArray& array_of(const MovingArray* arrays,
+                                                                  uint32_t array_count,
+                                                                  uint32_t number) {
+  uint32_t low = 0, high = array_count;
+  while (high - low > 1) {
+    const uint32_t middle = low + (high - low) / 2;
+    (arrays[middle].first <= number ? low : high) = middle;
+  }
+  return arrays[low];
+}
+
+/// The steps of an instance from one on.
+__attribute__((always_inline)) inline const float* steps_of(const MovingArray& array,
+                                                            uint32_t number, uint32_t step) {
+  const uint64_t steps_before =
+      uint64_t{number - array.first} * (array.time.segment_count + 1) + step;
+  return array.steps + steps_before * step_size_of(array.format);
+}
+
+/// The matrix of an instance at a time; false where it does not exist then.
+__attribute__((always_inline)) inline bool matrix_at(const MovingArray& array, uint32_t number,
+                                                     float time, float (&rows)[12]) {
+  TimePlace place;
+  if (!place_in_time(array.time, time, place)) return false;
+  matrix_between(steps_of(array, number, place.segment), array.format, place.fraction, rows);
+  return true;
+}
 
 }  // namespace kiwami

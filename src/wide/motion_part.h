@@ -5,21 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "wide/moving_boxes.h"
+#include "wide/time_steps.h"
 #include "wide/wide_bvh.h"
 
 namespace kiwami {
-
-/// Equal steps of time.
-struct TimeSteps {
-  float begin, end;
-  uint32_t segment_count;  ///< steps but one
-};
-
-/// Where a time lies among steps.
-struct TimePlace {
-  uint32_t segment;
-  float fraction;  ///< of the way through it, 0 to 1
-};
 
 /// One mesh. The buffers may lie at any address; no byte beyond the last element is read.
 struct MovingMeshView {
@@ -36,23 +26,12 @@ struct MovingMeshView {
   uint32_t mask;
 };
 
-/// Boxes of the children of a node that grow linearly over a segment of time: those at its start,
-/// then those at its end, each as in WideNode.
-template <int N>
-struct alignas(64) MotionBounds {
-  float bounds[2][3][2][N];
-};
-static_assert(sizeof(MotionBounds<4>) == 192 && sizeof(MotionBounds<8>) == 384 &&
-              sizeof(MotionBounds<16>) == 768);
-
 /// All moving meshes of a scene, by rising first_id, without gaps, and what their tree lacks: its
 /// own boxes are of no time in particular.
 struct MotionPart {
   const MovingMeshView* meshes;
   uint32_t mesh_count;
-  TimeSteps time;               ///< of the boxes
-  const unsigned char* bounds;  ///< MotionBounds<N> of each node, segment after segment
-  uint64_t node_count;
+  MovingBoxes boxes;
   SceneView scene;  ///< what a query needs to know of the triangles: ranges, masks
 };
 

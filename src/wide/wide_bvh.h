@@ -116,7 +116,19 @@ struct GeometryRange {
 };
 
 /// What the leaves of a part's tree hold.
-enum class PartKind : uint32_t { kInstances, kShapes, kUser, kMovingTriangles, kMeshes };
+enum class PartKind : uint32_t {
+  kInstances,
+  kShapes,
+  kUser,
+  kMovingTriangles,
+  kMeshes,
+  kMovingInstances
+};
+
+/// Whether the boxes of the tree's nodes are of no time in particular.
+constexpr bool has_moving_boxes(PartKind kind) {
+  return kind == PartKind::kMovingTriangles || kind == PartKind::kMovingInstances;
+}
 
 /// A tree of a scene beside that of its triangles, with leaves of ids. Plain data.
 struct ScenePart {

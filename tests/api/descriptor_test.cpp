@@ -46,6 +46,7 @@ TEST(Descriptor, InitFillsWhatTheCallerHas) {
   expect_init(kiwami_curves_desc_init, 8);
   expect_init(kiwami_user_geometry_desc_init, 8);
   expect_init(kiwami_moving_mesh_desc_init, 8);
+  expect_init(kiwami_moving_instances_desc_init, 8);
   expect_init(kiwami_ray_fields_init, 8);
   expect_init(kiwami_hit_fields_init, 8);
   expect_init(kiwami_query_init, 8);

@@ -189,6 +189,45 @@ static void check_moving_mesh(void) {
   FIELD(kiwami_moving_mesh_desc, mask, 92);
 }
 
+static void check_moving_instances(void) {
+  SIZE(kiwami_quaternion_transform, 64);
+  FIELD(kiwami_quaternion_transform, scale_x, 0);
+  FIELD(kiwami_quaternion_transform, scale_y, 4);
+  FIELD(kiwami_quaternion_transform, scale_z, 8);
+  FIELD(kiwami_quaternion_transform, skew_xy, 12);
+  FIELD(kiwami_quaternion_transform, skew_xz, 16);
+  FIELD(kiwami_quaternion_transform, skew_yz, 20);
+  FIELD(kiwami_quaternion_transform, shift_x, 24);
+  FIELD(kiwami_quaternion_transform, shift_y, 28);
+  FIELD(kiwami_quaternion_transform, shift_z, 32);
+  FIELD(kiwami_quaternion_transform, quaternion_r, 36);
+  FIELD(kiwami_quaternion_transform, quaternion_i, 40);
+  FIELD(kiwami_quaternion_transform, quaternion_j, 44);
+  FIELD(kiwami_quaternion_transform, quaternion_k, 48);
+  FIELD(kiwami_quaternion_transform, translation_x, 52);
+  FIELD(kiwami_quaternion_transform, translation_y, 56);
+  FIELD(kiwami_quaternion_transform, translation_z, 60);
+  SIZE(kiwami_moving_instances_desc, 112);
+  FIELD(kiwami_moving_instances_desc, struct_size, 0);
+  FIELD(kiwami_moving_instances_desc, flags, 4);
+  FIELD(kiwami_moving_instances_desc, scenes, 8);
+  FIELD(kiwami_moving_instances_desc, scene_count, 16);
+  FIELD(kiwami_moving_instances_desc, scene_indices, 24);
+  FIELD(kiwami_moving_instances_desc, scene_index_stride, 32);
+  FIELD(kiwami_moving_instances_desc, transforms, 40);
+  FIELD(kiwami_moving_instances_desc, transform_stride, 48);
+  FIELD(kiwami_moving_instances_desc, step_stride, 56);
+  FIELD(kiwami_moving_instances_desc, count, 64);
+  FIELD(kiwami_moving_instances_desc, masks, 72);
+  FIELD(kiwami_moving_instances_desc, mask_stride, 80);
+  FIELD(kiwami_moving_instances_desc, format, 88);
+  FIELD(kiwami_moving_instances_desc, step_count, 92);
+  FIELD(kiwami_moving_instances_desc, time_begin, 96);
+  FIELD(kiwami_moving_instances_desc, time_end, 100);
+  FIELD(kiwami_moving_instances_desc, mask, 104);
+  FIELD(kiwami_moving_instances_desc, reserved, 108);
+}
+
 static void check_user_geometry(void) {
   SIZE(kiwami_user_hit, 32);
   FIELD(kiwami_user_hit, t, 0);
@@ -648,6 +687,8 @@ static void check_numbers(void) {
   expect("KIWAMI_PARAMETER_LAYOUT", KIWAMI_PARAMETER_LAYOUT, 21);
   expect("KIWAMI_PARAMETER_REBRAID", KIWAMI_PARAMETER_REBRAID, 40);
   expect("KIWAMI_PARAMETER_REBRAID_BUDGET", KIWAMI_PARAMETER_REBRAID_BUDGET, 41);
+  expect("KIWAMI_TRANSFORM_MATRIX", KIWAMI_TRANSFORM_MATRIX, 0);
+  expect("KIWAMI_TRANSFORM_QUATERNION", KIWAMI_TRANSFORM_QUATERNION, 1);
   expect("KIWAMI_REBRAID_OFF", KIWAMI_REBRAID_OFF, 0);
   expect("KIWAMI_REBRAID_FULL", KIWAMI_REBRAID_FULL, 1);
   expect("KIWAMI_REBRAID_ROOTS", KIWAMI_REBRAID_ROOTS, 2);
@@ -690,6 +731,7 @@ int main(void) {
     check_shapes();
     check_user_geometry();
     check_moving_mesh();
+    check_moving_instances();
     check_fields();
     check_bvh_desc();
     check_light_descs();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace kiwami_tests {
 namespace {
@@ -171,10 +172,47 @@ kiwami_geometry* make_geometry(kiwami_device* device, const Mesh& mesh) {
   return geometry;
 }
 
+kiwami_geometry* make_geometry(kiwami_device* device, const Mesh& mesh,
+                               const std::vector<Point>& moved) {
+  std::vector<Point> vertices = mesh.vertices;
+  vertices.insert(vertices.end(), moved.begin(), moved.end());
+  kiwami_moving_mesh_desc desc;
+  check(kiwami_moving_mesh_desc_init(&desc, sizeof desc));
+  desc.vertices = vertices.data();
+  desc.vertex_count = moved.size();
+  desc.indices = mesh.triangles.data();
+  desc.triangle_count = mesh.triangles.size();
+  desc.mask = mesh.mask;
+  kiwami_geometry* geometry = nullptr;
+  check(kiwami_moving_mesh_create(device, &desc, &geometry));
+  return geometry;
+}
+
+kiwami_geometry* make_moving_geometry(kiwami_device* device, const InstanceArray& array,
+                                      const std::vector<kiwami_scene*>& scenes) {
+  kiwami_moving_instances_desc desc;
+  check(kiwami_moving_instances_desc_init(&desc, sizeof desc));
+  desc.scenes = scenes.data();
+  desc.scene_count = scenes.size();
+  desc.scene_indices = array.shown.data();
+  desc.transforms = array.steps.data();
+  desc.count = array.shown.size();
+  desc.masks = array.masks.data();
+  desc.mask = array.mask;
+  desc.format = array.format;
+  desc.step_count = array.step_count;
+  desc.time_begin = array.begin;
+  desc.time_end = array.end;
+  kiwami_geometry* geometry = nullptr;
+  check(kiwami_moving_instances_create(device, &desc, &geometry));
+  return geometry;
+}
+
 kiwami_geometry* make_geometry(kiwami_device* device, const InstanceArray& array,
                                const std::vector<SceneHandle>& scenes) {
   std::vector<kiwami_scene*> handles;
   for (const SceneHandle& scene : scenes) handles.push_back(scene.get());
+  if (array.step_count > 1) return make_moving_geometry(device, array, handles);
   kiwami_instances_desc desc;
   check(kiwami_instances_desc_init(&desc, sizeof desc));
   desc.scenes = handles.data();
@@ -189,7 +227,146 @@ kiwami_geometry* make_geometry(kiwami_device* device, const InstanceArray& array
   return geometry;
 }
 
+/// A step that is near the matrix, or another one.
+Matrix34 random_step(const Matrix34& before, Random& random) {
+  if (random.one_in(3)) return random_transform(random);
+  Matrix34 step = before;
+  for (float& entry : step) entry += 0.2f * random.symmetric();
+  return step;
+}
+
+std::array<float, 16> random_quaternion_step(Random& random) {
+  const auto scale = [&] {
+    return (random.one_in(4) ? -1.0f : 1.0f) * (0.7f + 0.6f * random.unit());
+  };
+  const bool is_plain = random.one_in(2);
+  std::array<float, 16> step{};
+  for (size_t i = 0; i < 3; ++i) {
+    step[i] = is_plain ? 1.0f : scale();
+    if (!is_plain) step[3 + i] = 0.3f * random.symmetric();
+    if (!is_plain) step[6 + i] = random.symmetric();
+    step[13 + i] = 2.0f * random.symmetric();
+  }
+  for (size_t i = 0; i < 4; ++i) step[9 + i] = random.symmetric() + (i == 0 ? 0.01f : 0.0f);
+  return step;
+}
+
+void set_in_motion(InstanceArray& array, Random& random) {
+  constexpr uint32_t kCounts[] = {2, 2, 3, 5};
+  array.step_count = kCounts[random.below(4)];
+  array.format = random.one_in(2) ? KIWAMI_TRANSFORM_MATRIX : KIWAMI_TRANSFORM_QUATERNION;
+  if (random.one_in(3)) array.begin = -0.5f * random.unit();
+  if (random.one_in(3)) array.end = 0.4f + random.unit();
+  for (const Matrix34& transform : array.transforms) {
+    Matrix34 step = transform;
+    for (uint32_t k = 0; k < array.step_count; ++k) {
+      if (array.format == KIWAMI_TRANSFORM_MATRIX) {
+        if (k != 0) step = random_step(step, random);
+        array.steps.insert(array.steps.end(), step.begin(), step.end());
+      } else {
+        const std::array<float, 16> turned = random_quaternion_step(random);
+        array.steps.insert(array.steps.end(), turned.begin(), turned.end());
+      }
+    }
+  }
+}
+
+/// As the documentation of kiwami_moving_mesh_desc places a time; false: outside.
+bool place_of(const InstanceArray& array, float time, size_t& step, float& fraction) {
+  if (!(array.begin <= time && time <= array.end)) return false;
+  const auto n = static_cast<float>(array.step_count - 1);
+  const float s = (time - array.begin) / (array.end - array.begin) * n;
+  step = static_cast<size_t>(std::fmin(std::floor(s), n - 1.0f));
+  fraction = s - static_cast<float>(step);
+  return true;
+}
+
+Matrix34 transform_at(const InstanceArray& array, const kiwami_geometry* made, size_t i, float time,
+                      size_t step, float fraction) {
+  Matrix34 transform;
+  if (array.format != KIWAMI_TRANSFORM_MATRIX) {
+    check(kiwami_instances_transform(made, i, time, transform.data()));
+    return transform;
+  }
+  const float* a = &array.steps[(i * array.step_count + step) * 12];
+  for (size_t k = 0; k < 12; ++k) {
+    const float of_a = (1.0f - fraction) * a[k], of_b = fraction * a[12 + k];
+    transform[k] = of_a + of_b;
+  }
+  return transform;
+}
+
+bool is_singular(const Matrix34& transform) {
+  const Matrix matrix = widened(transform);
+  // At least 1, but for NaN, of which norms know nothing.
+  const double condition = norm(matrix) * norm(inverse_linear(matrix));
+  return !(0.5 <= condition && condition <= 0x1p20);
+}
+
+InstanceArray frozen(const InstanceArray& array, kiwami_device* device,
+                     const std::vector<SceneHandle>& scenes, float time) {
+  InstanceArray still = array;
+  if (array.step_count == 1) return still;
+  still.step_count = 1;
+  const std::unique_ptr<kiwami_geometry, Release> made(make_geometry(device, array, scenes));
+  size_t step = 0;
+  float fraction = 0.0f;
+  const bool is_there = place_of(array, time, step, fraction);
+  for (size_t i = 0; i < array.shown.size(); ++i) {
+    Matrix34 then = array.transforms[i];
+    if (is_there) then = transform_at(array, made.get(), i, time, step, fraction);
+    if (is_there && !is_singular(then)) {
+      still.transforms[i] = then;
+    } else {
+      still.masks[i] = 0;
+    }
+  }
+  return still;
+}
+
 }  // namespace
+
+SceneGraph in_motion(SceneGraph graph, Random& random) {
+  for (GraphScene& scene : graph.scenes) {
+    scene.moved.resize(scene.meshes.size());
+    for (size_t i = 0; i < scene.meshes.size(); ++i) {
+      if (!random.one_in(3)) continue;
+      const Point way = random_point(random, 1.0f);
+      for (const Point& vertex : scene.meshes[i].vertices) {
+        scene.moved[i].push_back(vertex + way + random_point(random, 0.2f));
+      }
+    }
+    for (InstanceArray& array : scene.arrays) {
+      if (!random.one_in(4)) set_in_motion(array, random);
+    }
+  }
+  return graph;
+}
+
+SceneGraph frozen(const SceneGraph& graph, kiwami_device* device,
+                  const std::vector<SceneHandle>& scenes, float time) {
+  SceneGraph still = graph;
+  for (GraphScene& scene : still.scenes) {
+    for (size_t i = 0; i < scene.moved.size(); ++i) {
+      if (scene.moved[i].empty()) continue;
+      Mesh& mesh = scene.meshes[i];
+      if (!(0.0f <= time && time <= 1.0f)) {
+        mesh.triangles.clear();
+        continue;
+      }
+      for (size_t k = 0; k < mesh.vertices.size(); ++k) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const float a = (1.0f - time) * mesh.vertices[k][axis];
+          const float b = time * scene.moved[i][k][axis];
+          mesh.vertices[k][axis] = a + b;
+        }
+      }
+    }
+    scene.moved.clear();
+    for (InstanceArray& array : scene.arrays) array = frozen(array, device, scenes, time);
+  }
+  return still;
+}
 
 uint32_t SceneGraph::depth() const {
   std::vector<uint32_t> depths;
@@ -252,7 +429,11 @@ std::vector<SceneHandle> build(kiwami_device* device, const SceneGraph& graph, u
     check(kiwami_scene_set_parameter(handle, KIWAMI_PARAMETER_BVH_WIDTH, width));
     check(kiwami_scene_set_parameter(handle, KIWAMI_PARAMETER_VALIDATE_BUILD, 1));
     check(kiwami_scene_set_parameter(handle, KIWAMI_PARAMETER_REBRAID, rebraid));
-    for (const Mesh& mesh : scene.meshes) attach(made, make_geometry(device, mesh));
+    for (size_t i = 0; i < scene.meshes.size(); ++i) {
+      const bool is_moving = i < scene.moved.size() && !scene.moved[i].empty();
+      attach(made, is_moving ? make_geometry(device, scene.meshes[i], scene.moved[i])
+                             : make_geometry(device, scene.meshes[i]));
+    }
     for (const InstanceArray& array : scene.arrays) {
       attach(made, make_geometry(device, array, scenes));
     }

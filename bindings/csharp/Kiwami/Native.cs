@@ -635,6 +635,50 @@ internal unsafe struct kiwami_moving_mesh_desc {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_quaternion_transform {
+  public float scale_x;
+  public float scale_y;
+  public float scale_z;
+  public float skew_xy;
+  public float skew_xz;
+  public float skew_yz;
+  public float shift_x;
+  public float shift_y;
+  public float shift_z;
+  public float quaternion_r;
+  public float quaternion_i;
+  public float quaternion_j;
+  public float quaternion_k;
+  public float translation_x;
+  public float translation_y;
+  public float translation_z;
+  public const int Size = 64;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_moving_instances_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr scenes;
+  public ulong scene_count;
+  public IntPtr scene_indices;
+  public ulong scene_index_stride;
+  public IntPtr transforms;
+  public ulong transform_stride;
+  public ulong step_stride;
+  public ulong count;
+  public IntPtr masks;
+  public ulong mask_stride;
+  public uint format;
+  public uint step_count;
+  public float time_begin;
+  public float time_end;
+  public uint mask;
+  public uint reserved;
+  public const int Size = 112;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_opacity_desc {
   public uint struct_size;
   public uint format;
@@ -908,6 +952,8 @@ internal static class Native {
   public const uint KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
   public const uint KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   public const uint KIWAMI_MAX_TIME_STEPS = 129;
+  public const uint KIWAMI_TRANSFORM_MATRIX = 0;
+  public const uint KIWAMI_TRANSFORM_QUATERNION = 1;
   public const uint KIWAMI_OPACITY_TRANSPARENT = 0;
   public const uint KIWAMI_OPACITY_OPAQUE = 1;
   public const uint KIWAMI_OPACITY_UNKNOWN_TRANSPARENT = 2;
@@ -1205,6 +1251,15 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_moving_mesh_create(IntPtr device, IntPtr desc, IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_moving_instances_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_moving_instances_create(IntPtr device, IntPtr desc, IntPtr geometry);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_instances_transform(IntPtr instances, ulong instance, float time, IntPtr transform);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_opacity_desc_init(IntPtr desc, UIntPtr size);

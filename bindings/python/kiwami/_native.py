@@ -148,6 +148,8 @@ KIWAMI_LIGHT_ORDER_SCRAMBLED = 1
 KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1
 KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1
 KIWAMI_MAX_TIME_STEPS = 129
+KIWAMI_TRANSFORM_MATRIX = 0
+KIWAMI_TRANSFORM_QUATERNION = 1
 KIWAMI_OPACITY_TRANSPARENT = 0
 KIWAMI_OPACITY_OPAQUE = 1
 KIWAMI_OPACITY_UNKNOWN_TRANSPARENT = 2
@@ -801,6 +803,50 @@ class kiwami_moving_mesh_desc(ctypes.Structure):
     ]
 
 
+class kiwami_quaternion_transform(ctypes.Structure):
+    _fields_ = [
+        ("scale_x", ctypes.c_float),
+        ("scale_y", ctypes.c_float),
+        ("scale_z", ctypes.c_float),
+        ("skew_xy", ctypes.c_float),
+        ("skew_xz", ctypes.c_float),
+        ("skew_yz", ctypes.c_float),
+        ("shift_x", ctypes.c_float),
+        ("shift_y", ctypes.c_float),
+        ("shift_z", ctypes.c_float),
+        ("quaternion_r", ctypes.c_float),
+        ("quaternion_i", ctypes.c_float),
+        ("quaternion_j", ctypes.c_float),
+        ("quaternion_k", ctypes.c_float),
+        ("translation_x", ctypes.c_float),
+        ("translation_y", ctypes.c_float),
+        ("translation_z", ctypes.c_float),
+    ]
+
+
+class kiwami_moving_instances_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("scenes", ctypes.c_void_p),
+        ("scene_count", ctypes.c_uint64),
+        ("scene_indices", ctypes.c_void_p),
+        ("scene_index_stride", ctypes.c_uint64),
+        ("transforms", ctypes.c_void_p),
+        ("transform_stride", ctypes.c_uint64),
+        ("step_stride", ctypes.c_uint64),
+        ("count", ctypes.c_uint64),
+        ("masks", ctypes.c_void_p),
+        ("mask_stride", ctypes.c_uint64),
+        ("format", ctypes.c_uint32),
+        ("step_count", ctypes.c_uint32),
+        ("time_begin", ctypes.c_float),
+        ("time_end", ctypes.c_float),
+        ("mask", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
 class kiwami_opacity_desc(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
@@ -974,6 +1020,8 @@ SIZES = {
     kiwami_light_lobe: 16,
     kiwami_light_query: 48,
     kiwami_moving_mesh_desc: 96,
+    kiwami_quaternion_transform: 64,
+    kiwami_moving_instances_desc: 112,
     kiwami_opacity_desc: 56,
     kiwami_spheres_desc: 48,
     kiwami_discs_desc: 72,
@@ -1393,6 +1441,21 @@ def declare(library):
     library.kiwami_moving_mesh_create.argtypes = [
         ctypes.c_void_p,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_moving_instances_desc_init.restype = ctypes.c_int32
+    library.kiwami_moving_instances_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_moving_instances_create.restype = ctypes.c_int32
+    library.kiwami_moving_instances_create.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_instances_transform.restype = ctypes.c_int32
+    library.kiwami_instances_transform.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_uint64,
+        ctypes.c_float,
         ctypes.c_void_p,
     ]
     library.kiwami_opacity_desc_init.restype = ctypes.c_int32

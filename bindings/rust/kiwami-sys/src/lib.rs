@@ -152,6 +152,8 @@ pub const KIWAMI_LIGHT_ORDER_SCRAMBLED: u32 = 1;
 pub const KIWAMI_LIGHT_QUERY_CALLING_THREAD: u32 = 1;
 pub const KIWAMI_MOVING_MESH_SHARE_BUFFERS: u32 = 1;
 pub const KIWAMI_MAX_TIME_STEPS: u32 = 129;
+pub const KIWAMI_TRANSFORM_MATRIX: u32 = 0;
+pub const KIWAMI_TRANSFORM_QUATERNION: u32 = 1;
 pub const KIWAMI_OPACITY_TRANSPARENT: u32 = 0;
 pub const KIWAMI_OPACITY_OPAQUE: u32 = 1;
 pub const KIWAMI_OPACITY_UNKNOWN_TRANSPARENT: u32 = 2;
@@ -866,6 +868,52 @@ const _: () = assert!(std::mem::size_of::<kiwami_moving_mesh_desc>() == 96);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct kiwami_quaternion_transform {
+    pub scale_x: f32,
+    pub scale_y: f32,
+    pub scale_z: f32,
+    pub skew_xy: f32,
+    pub skew_xz: f32,
+    pub skew_yz: f32,
+    pub shift_x: f32,
+    pub shift_y: f32,
+    pub shift_z: f32,
+    pub quaternion_r: f32,
+    pub quaternion_i: f32,
+    pub quaternion_j: f32,
+    pub quaternion_k: f32,
+    pub translation_x: f32,
+    pub translation_y: f32,
+    pub translation_z: f32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_quaternion_transform>() == 64);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_moving_instances_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub scenes: *mut *mut kiwami_scene,
+    pub scene_count: u64,
+    pub scene_indices: *const c_void,
+    pub scene_index_stride: u64,
+    pub transforms: *const c_void,
+    pub transform_stride: u64,
+    pub step_stride: u64,
+    pub count: u64,
+    pub masks: *const c_void,
+    pub mask_stride: u64,
+    pub format: u32,
+    pub step_count: u32,
+    pub time_begin: f32,
+    pub time_end: f32,
+    pub mask: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_moving_instances_desc>() == 112);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct kiwami_opacity_desc {
     pub struct_size: u32,
     pub format: u32,
@@ -1096,6 +1144,9 @@ extern "C" {
     pub fn kiwami_light_pdf(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, lights: *const kiwami_light_name, light_stride: usize, probabilities: *mut f32, probability_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
     pub fn kiwami_moving_mesh_desc_init(desc: *mut kiwami_moving_mesh_desc, size: usize) -> kiwami_result;
     pub fn kiwami_moving_mesh_create(device: *mut kiwami_device, desc: *const kiwami_moving_mesh_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
+    pub fn kiwami_moving_instances_desc_init(desc: *mut kiwami_moving_instances_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_moving_instances_create(device: *mut kiwami_device, desc: *const kiwami_moving_instances_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
+    pub fn kiwami_instances_transform(instances: *const kiwami_geometry, instance: u64, time: f32, transform: *mut f32) -> kiwami_result;
     pub fn kiwami_opacity_desc_init(desc: *mut kiwami_opacity_desc, size: usize) -> kiwami_result;
     pub fn kiwami_triangle_mesh_set_opacity(mesh: *mut kiwami_geometry, desc: *const kiwami_opacity_desc) -> kiwami_result;
     pub fn kiwami_opacity_micro_triangle(u: f32, v: f32, level: u32) -> u32;

@@ -153,6 +153,8 @@ final class Native {
   static final int KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
   static final int KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   static final int KIWAMI_MAX_TIME_STEPS = 129;
+  static final int KIWAMI_TRANSFORM_MATRIX = 0;
+  static final int KIWAMI_TRANSFORM_QUATERNION = 1;
   static final int KIWAMI_OPACITY_TRANSPARENT = 0;
   static final int KIWAMI_OPACITY_OPAQUE = 1;
   static final int KIWAMI_OPACITY_UNKNOWN_TRANSPARENT = 2;
@@ -754,6 +756,50 @@ final class Native {
     static final int MASK = 92;
   }
 
+  /** Offsets of kiwami_quaternion_transform. */
+  static final class QuaternionTransform {
+    static final int STRUCT_BYTES = 64;
+    static final int SCALE_X = 0;
+    static final int SCALE_Y = 4;
+    static final int SCALE_Z = 8;
+    static final int SKEW_XY = 12;
+    static final int SKEW_XZ = 16;
+    static final int SKEW_YZ = 20;
+    static final int SHIFT_X = 24;
+    static final int SHIFT_Y = 28;
+    static final int SHIFT_Z = 32;
+    static final int QUATERNION_R = 36;
+    static final int QUATERNION_I = 40;
+    static final int QUATERNION_J = 44;
+    static final int QUATERNION_K = 48;
+    static final int TRANSLATION_X = 52;
+    static final int TRANSLATION_Y = 56;
+    static final int TRANSLATION_Z = 60;
+  }
+
+  /** Offsets of kiwami_moving_instances_desc. */
+  static final class MovingInstancesDesc {
+    static final int STRUCT_BYTES = 112;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int SCENES = 8;
+    static final int SCENE_COUNT = 16;
+    static final int SCENE_INDICES = 24;
+    static final int SCENE_INDEX_STRIDE = 32;
+    static final int TRANSFORMS = 40;
+    static final int TRANSFORM_STRIDE = 48;
+    static final int STEP_STRIDE = 56;
+    static final int COUNT = 64;
+    static final int MASKS = 72;
+    static final int MASK_STRIDE = 80;
+    static final int FORMAT = 88;
+    static final int STEP_COUNT = 92;
+    static final int TIME_BEGIN = 96;
+    static final int TIME_END = 100;
+    static final int MASK = 104;
+    static final int RESERVED = 108;
+  }
+
   /** Offsets of kiwami_opacity_desc. */
   static final class OpacityDesc {
     static final int STRUCT_BYTES = 56;
@@ -1076,6 +1122,12 @@ final class Native {
   static native int kiwami_moving_mesh_desc_init(Pointer desc, long size);
 
   static native int kiwami_moving_mesh_create(Pointer device, Pointer desc, Pointer geometry);
+
+  static native int kiwami_moving_instances_desc_init(Pointer desc, long size);
+
+  static native int kiwami_moving_instances_create(Pointer device, Pointer desc, Pointer geometry);
+
+  static native int kiwami_instances_transform(Pointer instances, long instance, float time, Pointer transform);
 
   static native int kiwami_opacity_desc_init(Pointer desc, long size);
 

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/moving_instances.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "core/collect_boxes.h"
+#include "core/committed_scene.h"
+#include "math/rounding.h"
+
+namespace kiwami {
+namespace {
+
+/// Instances that one task looks at.
+constexpr size_t kBlockSize = 1024;
+
+Affine map_at(const MovingArray& array, const float* steps, double fraction) {
+  float rows[12];
+  if (fraction == 0.0) {
+    matrix_of_step(steps, array.format, rows);
+  } else {
+    matrix_between(steps, array.format, static_cast<float>(fraction), rows);
+  }
+  return map_of(rows);
+}
+
+}  // namespace
+
+/// Where the instances are. Everything of one is found by its place among those that move.
+class MovingInstances::Source final : public MovingSource {
+ public:
+  Source(const MovingInstances& moving, CommittedScene* const* scenes, Memory& memory,
+         const Parallel& parallel)
+      : moving_(moving), scenes_(scenes), places_(memory, moving.array_count_) {
+    size_t count = 0;
+    for (uint32_t i = 0; i < moving.array_count_; ++i) {
+      places_[i] = count;
+      count += moving.arrays_[i].count;
+    }
+    entries_ = Array<Entry>(memory, count);
+    for (uint32_t i = 0; i < moving.array_count_; ++i) {
+      const MovingArray& array = moving.arrays_[i];
+      parallel.for_blocks(array.count, kBlockSize, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+          entries_[places_[i] + k] = measure(array, array.first + static_cast<uint32_t>(k));
+        }
+      });
+    }
+  }
+
+  /// What all show at any time, and the errors of hits there.
+  Bounds bounds() const {
+    Bounds bounds = Bounds::empty();
+    for (const Entry& entry : entries_) bounds.extend(entry.bounds);
+    return bounds;
+  }
+  HitError error() const {
+    HitError error;
+    for (const Entry& entry : entries_) error.extend(entry.error);
+    return error;
+  }
+
+  /// The mean boxes of those that show something, and the box of all boxes.
+  Array<BuildPrimitive> boxes(Memory& memory, Bounds& extent) const {
+    Array<BuildPrimitive> boxes(memory, entries_.size());
+    size_t used = 0, place = 0;
+    extent = Bounds::empty();
+    for (uint32_t i = 0; i < moving_.array_count_; ++i) {
+      const MovingArray& array = moving_.arrays_[i];
+      for (uint32_t k = 0; k < array.count; ++k) {
+        const Entry& entry = entries_[place++];
+        if (entry.bounds.is_empty()) continue;
+        const uint32_t number = array.first + k;
+        const Bounds mean = mean_box(array, number, scene_of(number).bounds());
+        boxes[used++] = {mean.lower, number, mean.upper, 0};
+        extent.extend(widened(entry.bounds, margin_of(entry)));
+      }
+    }
+    boxes.shrink(used);
+    return boxes;
+  }
+
+  LinearBounds during(uint32_t number, uint32_t segment) const override {
+    LinearBounds bounds;
+    const MovingArray& array = array_of_number(number);
+    const Entry& entry = entry_of(array, number);
+    if (entry.bounds.is_empty()) return bounds;
+    const Bounds inner = scene_of(number).bounds();
+    if (are_same(array.time, moving_.time_)) {
+      const double margin = margin_of(entry) + bow(array, number, segment, inner);
+      bounds.start = image_at(array, number, segment, 0.0, inner, margin);
+      bounds.end = image_at(array, number, segment, 1.0, inner, margin);
+    } else {
+      bounds.start = bounds.end = swept_box(array, number, segment, inner, margin_of(entry));
+      if (bounds.start.is_empty()) return bounds;
+    }
+    pad(bounds.start, moving_.tree_.tree().bounds);
+    pad(bounds.end, moving_.tree_.tree().bounds);
+    return bounds;
+  }
+
+  Bounds at(uint32_t number, float time) const override {
+    const MovingArray& array = array_of_number(number);
+    const CommittedScene& scene = scene_of(number);
+    float rows[12], inverse[4][3];
+    if (scene.bounds().is_empty() || !matrix_at(array, number, time, rows) ||
+        !invert_for_rays(rows, inverse)) {
+      return Bounds::empty();
+    }
+    return image_of(inverse_of(map_of(inverse)), scene.bounds(), 0.0);
+  }
+
+ private:
+  struct Entry {
+    Bounds bounds;  ///< at all times; empty: it shows nothing
+    HitError error;
+    double rounding;
+  };
+
+  const MovingArray& array_of_number(uint32_t number) const {
+    return array_of(moving_.arrays_.data(), moving_.array_count_, number);
+  }
+  const Entry& entry_of(const MovingArray& array, uint32_t number) const {
+    const size_t i = static_cast<size_t>(&array - moving_.arrays_.data());
+    return entries_[places_[i] + (number - array.first)];
+  }
+  const CommittedScene& scene_of(uint32_t number) const {
+    return *scenes_[moving_.data_.instances.instances[number].prototype];
+  }
+
+  Entry measure(const MovingArray& array, uint32_t number) const {
+    Entry entry{Bounds::empty(), {}, 0.0};
+    const CommittedScene& scene = scene_of(number);
+    const Bounds inner = scene.bounds();
+    if (inner.is_empty()) return entry;
+    const MotionLimits limits =
+        MotionLimits::of(steps_of(array, number, 0), array.time.segment_count, array.format);
+    entry.rounding = limits.rounding(inner);
+    for (uint32_t segment = 0; segment < array.time.segment_count; ++segment) {
+      const double margin = entry.rounding + bow(array, number, segment, inner);
+      entry.bounds.extend(image_at(array, number, segment, 0.0, inner, margin));
+      entry.bounds.extend(image_at(array, number, segment, 1.0, inner, margin));
+    }
+    entry.error = limits.error_through(scene.hit_error(), entry.bounds);
+    return entry;
+  }
+
+  /// What boxes from the matrices of steps lack, but for the bow.
+  double margin_of(const Entry& entry) const {
+    return entry.rounding + entry.error.margin(double{moving_.far_origin_});
+  }
+
+  static double bow(const MovingArray& array, uint32_t number, uint32_t segment,
+                    const Bounds& inner) {
+    return bow_of(steps_of(array, number, segment), array.format, inner);
+  }
+
+  static Bounds image_at(const MovingArray& array, uint32_t number, uint32_t segment,
+                         double fraction, const Bounds& inner, double margin) {
+    // An end is that of the step, whatever the segment makes of it.
+    const bool is_end = fraction == 1.0;
+    const float* const steps = steps_of(array, number, segment + (is_end ? 1 : 0));
+    return image_of(map_at(array, steps, is_end ? 0.0 : fraction), inner, margin);
+  }
+
+  static Bounds widened(const Bounds& box, double margin) {
+    Bounds wider;
+    for (int axis = 0; axis < 3; ++axis) {
+      wider.lower[axis] = round_down(double{box.lower[axis]} - margin);
+      wider.upper[axis] = round_up(double{box.upper[axis]} + margin);
+    }
+    return wider;
+  }
+
+  static Bounds mean_box(const MovingArray& array, uint32_t number, const Bounds& inner) {
+    double lower[3] = {}, upper[3] = {};
+    const uint32_t step_count = array.time.segment_count + 1;
+    for (uint32_t step = 0; step < step_count; ++step) {
+      const Bounds box = image_of(map_at(array, steps_of(array, number, step), 0.0), inner, 0.0);
+      for (int axis = 0; axis < 3; ++axis) {
+        lower[axis] += double{box.lower[axis]};
+        upper[axis] += double{box.upper[axis]};
+      }
+    }
+    Bounds mean;
+    for (int axis = 0; axis < 3; ++axis) {
+      mean.lower[axis] = static_cast<float>(lower[axis] / step_count);
+      mean.upper[axis] = static_cast<float>(upper[axis] / step_count);
+    }
+    return mean;
+  }
+
+  /// Where it is at any time of a segment of the tree's steps, which are not its own.
+  Bounds swept_box(const MovingArray& array, uint32_t number, uint32_t segment, const Bounds& inner,
+                   double margin) const {
+    Bounds box = Bounds::empty();
+    PlaceRange range;
+    if (!places_during(array.time, moving_.time_, segment, range)) return box;
+    const uint32_t last_segment = array.time.segment_count - 1;
+    const auto first = std::min(static_cast<uint32_t>(range.first), last_segment);
+    const auto last = std::min(static_cast<uint32_t>(range.last), last_segment);
+    for (uint32_t own = first; own <= last; ++own) {
+      const double wider = margin + bow(array, number, own, inner);
+      const double begin = std::max(range.first - own, 0.0), end = std::min(range.last - own, 1.0);
+      box.extend(image_at(array, number, own, begin, inner, wider));
+      box.extend(image_at(array, number, own, end, inner, wider));
+    }
+    return box;
+  }
+
+  const MovingInstances& moving_;
+  CommittedScene* const* scenes_;
+  Array<size_t> places_;  ///< of the first instance of each array
+  Array<Entry> entries_;
+};
+
+void MovingInstances::reserve(Memory& memory, size_t array_count, size_t step_floats) {
+  arrays_ = Array<MovingArray>(memory, array_count);
+  steps_ = Array<float>(memory, step_floats);
+}
+
+bool MovingInstances::add(const Instances& instances, uint32_t first, const Parallel& parallel) {
+  const size_t floats = step_floats_of(instances), per_instance = floats / instances.count();
+  float* const steps = steps_.data() + used_floats_;
+  std::atomic<bool> is_faulty{false};
+  parallel.for_blocks(instances.count(), kBlockSize, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      if (instances.read_steps(static_cast<uint32_t>(i), steps + i * per_instance)) continue;
+      is_faulty.store(true, std::memory_order_relaxed);
+      return;
+    }
+  });
+  arrays_[array_count_++] = {steps, instances.time(), instances.format(), first, instances.count()};
+  used_floats_ += floats;
+  return !is_faulty.load();
+}
+
+void MovingInstances::build(const InstancePart& all, CommittedScene* const* scenes,
+                            const PartPlan& plan) {
+  if (array_count_ == 0) return;
+  data_.instances = all;
+  data_.instances.starts = nullptr;
+  data_.arrays = arrays_.data();
+  data_.array_count = array_count_;
+  Array<TimeSteps> times(plan.memory, array_count_);
+  for (uint32_t i = 0; i < array_count_; ++i) times[i] = arrays_[i].time;
+  time_ = common_steps(times.data(), times.size());
+  const Source source(*this, scenes, plan.memory, plan.parallel);
+  bounds_ = source.bounds();
+  error_ = source.error();
+  if (bounds_.is_empty()) return;
+  far_origin_ = static_cast<float>(2.0 * greatest_coordinate(bounds_));
+  Bounds extent;
+  Array<BuildPrimitive> boxes = source.boxes(plan.memory, extent);
+  tree_.build(std::move(boxes), extent, time_, source, plan);
+  data_.boxes = tree_.boxes();
+  if (plan.parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
+    validate(scenes, plan.memory, plan.parallel);
+  }
+}
+
+ScenePart MovingInstances::part() const {
+  return {PartKind::kMovingInstances, tree_.tree().tree.view, &data_, far_origin_,
+          far_origin_margin_of(error_)};
+}
+
+void MovingInstances::validate(CommittedScene* const* scenes, Memory& memory,
+                               const Parallel& parallel) const {
+  if (!can_be_hit()) return;
+  const Source source(*this, scenes, memory, parallel);
+  Bounds extent;
+  tree_.validate(source.boxes(memory, extent), source, memory, parallel);
+}
+
+}  // namespace kiwami

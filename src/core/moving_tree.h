@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trees over what moves: of each node the boxes at the start and at the end of every segment of
+// time.
+#pragma once
+
+#include "core/linear_bounds.h"
+#include "core/part_tree.h"
+#include "wide/moving_boxes.h"
+
+namespace kiwami {
+
+/// Where the primitives of a moving tree are.
+class MovingSource {
+ public:
+  /// During a segment of the tree's steps: boxes that move linearly around the primitive, with room
+  /// for the rounding of what is interpolated. Empty where it does not exist then.
+  virtual LinearBounds during(uint32_t id, uint32_t segment) const = 0;
+  /// At a time; empty where it does not exist then. For checks.
+  virtual Bounds at(uint32_t id, float time) const = 0;
+
+ protected:
+  ~MovingSource() = default;
+};
+
+/// A tree whose nodes stay and whose boxes move.
+class MovingTree {
+ public:
+  MovingTree() = default;
+  MovingTree(const MovingTree&) = delete;
+  MovingTree& operator=(const MovingTree&) = delete;
+
+  /// Builds over boxes of no time in particular, by rising id. Extent holds all primitives at all
+  /// times. Throws Error.
+  void build(Array<BuildPrimitive> boxes, const Bounds& extent, const TimeSteps& time,
+             const MovingSource& source, const PartPlan& plan);
+
+  /// Its bounds are the extent.
+  const PartTree& tree() const { return tree_; }
+  /// Points into this object.
+  MovingBoxes boxes() const { return {time_, bounds_.data(), tree_.tree.node_count}; }
+  size_t bytes() const {
+    return tree_.tree.node_bytes() + tree_.tree.leaf_bytes() + bounds_.bytes();
+  }
+
+  /// Checks every invariant of the tree over the boxes that it was built over, and its boxes at and
+  /// between all steps; throws Error(VALIDATION or OUT_OF_MEMORY).
+  void validate(const Array<BuildPrimitive>& boxes, const MovingSource& source, Memory& memory,
+                const Parallel& parallel) const;
+
+ private:
+  template <int N>
+  void fill(const MovingSource& source, Memory& memory, const Parallel& parallel);
+  template <int N>
+  void check(const MovingSource& source, const Parallel& parallel) const;
+
+  PartTree tree_;
+  TimeSteps time_{};
+  Array<unsigned char> bounds_;
+};
+
+/// Steps over the time of all of count, as short as the shortest of theirs.
+TimeSteps common_steps(const TimeSteps* steps, size_t count);
+
+}  // namespace kiwami
