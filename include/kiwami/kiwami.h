@@ -20,6 +20,7 @@
 #include "scene.h"
 #include "shapes.h"
 #include "surface.h"
+#include "tetrahedra.h"
 #include "trace.h"
 #include "user_geometry.h"
 

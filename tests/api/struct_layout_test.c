@@ -66,6 +66,35 @@ static void check_distribution_desc(void) {
   FIELD(kiwami_distribution_desc, weight_count, 24);
 }
 
+static void check_tetrahedra(void) {
+  SIZE(kiwami_tetrahedra_info, 72);
+  FIELD(kiwami_tetrahedra_info, struct_size, 0);
+  FIELD(kiwami_tetrahedra_info, method, 4);
+  FIELD(kiwami_tetrahedra_info, tetrahedron_count, 8);
+  FIELD(kiwami_tetrahedra_info, skipped_count, 16);
+  FIELD(kiwami_tetrahedra_info, inverted_count, 24);
+  FIELD(kiwami_tetrahedra_info, face_count, 32);
+  FIELD(kiwami_tetrahedra_info, boundary_face_count, 40);
+  FIELD(kiwami_tetrahedra_info, crowded_face_count, 48);
+  FIELD(kiwami_tetrahedra_info, bytes, 56);
+  FIELD(kiwami_tetrahedra_info, build_seconds, 64);
+  SIZE(kiwami_tetrahedron_location, 20);
+  FIELD(kiwami_tetrahedron_location, tetrahedron_id, 0);
+  FIELD(kiwami_tetrahedron_location, weights, 4);
+}
+
+static void check_tetrahedra_desc(void) {
+  SIZE(kiwami_tetrahedra_desc, 56);
+  FIELD(kiwami_tetrahedra_desc, struct_size, 0);
+  FIELD(kiwami_tetrahedra_desc, method, 4);
+  FIELD(kiwami_tetrahedra_desc, vertices, 8);
+  FIELD(kiwami_tetrahedra_desc, vertex_stride, 16);
+  FIELD(kiwami_tetrahedra_desc, vertex_count, 24);
+  FIELD(kiwami_tetrahedra_desc, indices, 32);
+  FIELD(kiwami_tetrahedra_desc, index_stride, 40);
+  FIELD(kiwami_tetrahedra_desc, tetrahedron_count, 48);
+}
+
 static void check_lights(void) {
   SIZE(kiwami_light, 96);
   FIELD(kiwami_light, type, 0);
@@ -736,6 +765,7 @@ int main(void) {
     check_bvh_desc();
     check_light_descs();
     check_distribution_desc();
+    check_tetrahedra_desc();
     check_interpolation();
     check_opacity_desc();
   }
@@ -746,6 +776,7 @@ int main(void) {
   check_files();
   check_lights();
   check_distributions();
+  check_tetrahedra();
   check_numbers();
   return failures != 0;
 }

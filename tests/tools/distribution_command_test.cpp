@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `kiwami bench --distributions`: discrete distributions from the command line.
+// `kiwami bench --distributions` and `--tetrahedra`: what has no rays, from the command line.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -37,6 +37,26 @@ TEST(DistributionCommand, BenchComparesTheMethods) {
   // What a low-discrepancy sequence is for.
   EXPECT_LT(forest.at("unevenness").get<double>(),
             rows.at("alias_table").at("unevenness").get<double>());
+}
+
+TEST(TetrahedronCommand, BenchComparesTheMethods) {
+  const TemporaryFolder folder;
+  const CommandResult result = run_command({"bench", "--tetrahedra", "6", "--ray-count", "5000",
+                                            "--rounds", "1", "--json", folder / "rows.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
+  EXPECT_NE(result.output.find("binary_walk"), std::string::npos) << result.output;
+  std::map<std::string, int> methods;
+  for (const Json& row : Json::parse(read_bytes(folder / "rows.json"), nullptr, false)) {
+    EXPECT_EQ(row.at("tetrahedra"), 6 * 6 * 6 * 6);
+    EXPECT_EQ(row.at("wrong"), "");
+    EXPECT_GT(row.at("found").get<double>(), 0.75);
+    EXPECT_LT(row.at("found").get<double>(), 1.0);
+    EXPECT_GT(row.at("ratio").get<double>(), 0.0);
+    ++methods[row.at("method")];
+  }
+  const std::map<std::string, int> expected = {{"binary_walk", 2}, {"boxes", 2}, {"faces", 2}};
+  EXPECT_EQ(methods, expected);
+  EXPECT_EQ(run_command({"bench", "--tetrahedra", "0"}).exit_code, 2);
 }
 
 TEST(DistributionCommand, ASceneThatIsNotThereIsAnError) {

@@ -32,6 +32,7 @@ struct BenchOptions {
   std::string structures;
   bool change = false;
   bool distributions = false;
+  uint32_t tetrahedra = 0;
   std::string queries;
   uint32_t max_hits = 8;
   uint32_t edit = 0;

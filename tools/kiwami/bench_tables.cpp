@@ -11,6 +11,7 @@
 #include "kiwami/bench_report.h"
 #include "kiwami/bench_shapes.h"
 #include "kiwami/bench_structures.h"
+#include "kiwami/bench_tetrahedra.h"
 #include "kiwami/image.h"
 #include "scene/shape_clouds.h"
 
@@ -178,6 +179,19 @@ int run_shape_table(const BenchOptions& options, const BenchSettings& settings) 
     });
     if (!options.json.empty()) write_file(options.json, rows.dump(1) + "\n");
   }
+  return all_right ? 0 : kWrongAnswer;
+}
+
+int run_tetrahedron_table(const BenchOptions& options, const BenchSettings& settings) {
+  const std::vector<TetrahedronRow> rows = run_tetrahedra(options.tetrahedra, settings);
+  print_table(rows);
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  bool all_right = true;
+  for (const TetrahedronRow& row : rows) {
+    json.push_back(to_json(row));
+    all_right = all_right && row.wrong.empty();
+  }
+  if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
   return all_right ? 0 : kWrongAnswer;
 }
 

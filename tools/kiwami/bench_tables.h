@@ -20,4 +20,7 @@ std::optional<int> run_table(const BenchOptions& options, const BenchSettings& s
 /// The table of generated scenes of spheres, discs and curve segments.
 int run_shape_table(const BenchOptions& options, const BenchSettings& settings);
 
+/// The table of ways to locate points in a mesh of tetrahedra.
+int run_tetrahedron_table(const BenchOptions& options, const BenchSettings& settings);
+
 }  // namespace kiwami::tools

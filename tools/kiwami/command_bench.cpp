@@ -121,6 +121,7 @@ int run(const BenchOptions& options) {
   const BenchSettings settings = make_settings(options);
   if (!options.json.empty()) check_writable("--json", options.json);
   if (!options.shapes.empty()) return run_shape_table(options, settings);
+  if (options.tetrahedra != 0) return run_tetrahedron_table(options, settings);
   const std::vector<std::string> scenes = choose_scenes(options);
   if (options.instanced &&
       (options.peer == "binary" || !options.pipelines.empty() || !options.structures.empty())) {
@@ -245,6 +246,11 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
   command.add_flag("--distributions", options.distributions,
                    "Triangles drawn by their areas, --ray-count of them on one thread, by each "
                    "kind of discrete distribution, in place of rays");
+  command
+      .add_option("--tetrahedra", options.tetrahedra,
+                  "Points, --ray-count of them on one thread, located in a mesh of so many cubes "
+                  "along each side with six tetrahedra each; no SCENE is needed")
+      ->check(whole_number(1, 300));
   command.add_option("--queries", options.queries,
                      "A table of queries on one thread, some of " + joined_words(query_names()) +
                          ", next to what they replace: stepping from hit to hit, and Embree's "

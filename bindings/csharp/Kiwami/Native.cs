@@ -765,6 +765,41 @@ internal unsafe struct kiwami_interpolation {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_tetrahedra_desc {
+  public uint struct_size;
+  public uint method;
+  public IntPtr vertices;
+  public ulong vertex_stride;
+  public ulong vertex_count;
+  public IntPtr indices;
+  public ulong index_stride;
+  public ulong tetrahedron_count;
+  public const int Size = 56;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_tetrahedra_info {
+  public uint struct_size;
+  public uint method;
+  public ulong tetrahedron_count;
+  public ulong skipped_count;
+  public ulong inverted_count;
+  public ulong face_count;
+  public ulong boundary_face_count;
+  public ulong crowded_face_count;
+  public ulong bytes;
+  public double build_seconds;
+  public const int Size = 72;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_tetrahedron_location {
+  public uint tetrahedron_id;
+  public fixed float weights[4];
+  public const int Size = 20;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_user_hit {
   public float t;
   public float u;
@@ -962,6 +997,8 @@ internal static class Native {
   public const uint KIWAMI_OPACITY_4_STATES = 2;
   public const uint KIWAMI_OPACITY_MAX_LEVEL = 6;
   public const uint KIWAMI_SHAPES_SHARE_BUFFERS = 1;
+  public const uint KIWAMI_TETRAHEDRA_BOXES = 0;
+  public const uint KIWAMI_TETRAHEDRA_FACES = 1;
   public const uint KIWAMI_USER_HITS_PER_PRIMITIVE = 4;
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
@@ -1299,6 +1336,24 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_offset_origins(IntPtr scene, IntPtr hits, UIntPtr hit_stride, IntPtr directions, UIntPtr direction_stride, UIntPtr count, IntPtr origins, UIntPtr origin_stride);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_tetrahedra_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_tetrahedra_create(IntPtr device, IntPtr desc, IntPtr tetrahedra);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_tetrahedra_retain(IntPtr tetrahedra);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_tetrahedra_release(IntPtr tetrahedra);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_tetrahedra_get_info(IntPtr tetrahedra, IntPtr info);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_tetrahedra_locate(IntPtr tetrahedra, IntPtr points, UIntPtr point_stride, IntPtr locations, UIntPtr location_stride, UIntPtr count);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_user_geometry_desc_init(IntPtr desc, UIntPtr size);

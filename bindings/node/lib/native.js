@@ -158,6 +158,8 @@ exports.constants = {
   KIWAMI_OPACITY_4_STATES: 2,
   KIWAMI_OPACITY_MAX_LEVEL: 6,
   KIWAMI_SHAPES_SHARE_BUFFERS: 1,
+  KIWAMI_TETRAHEDRA_BOXES: 0,
+  KIWAMI_TETRAHEDRA_FACES: 1,
   KIWAMI_USER_HITS_PER_PRIMITIVE: 4,
 };
 
@@ -289,6 +291,12 @@ exports.functions = [
   'int32_t kiwami_interpolate(void * mesh, void * interpolation, size_t count)',
   'int32_t kiwami_hit_points(void * scene, void * hits, size_t hit_stride, size_t count, void * points, size_t point_stride, void * errors, size_t error_stride)',
   'int32_t kiwami_offset_origins(void * scene, void * hits, size_t hit_stride, void * directions, size_t direction_stride, size_t count, void * origins, size_t origin_stride)',
+  'int32_t kiwami_tetrahedra_desc_init(void * desc, size_t size)',
+  'int32_t kiwami_tetrahedra_create(void * device, void * desc, void * tetrahedra)',
+  'void kiwami_tetrahedra_retain(void * tetrahedra)',
+  'void kiwami_tetrahedra_release(void * tetrahedra)',
+  'int32_t kiwami_tetrahedra_get_info(void * tetrahedra, void * info)',
+  'int32_t kiwami_tetrahedra_locate(void * tetrahedra, void * points, size_t point_stride, void * locations, size_t location_stride, size_t count)',
   'int32_t kiwami_user_geometry_desc_init(void * desc, size_t size)',
   'int32_t kiwami_user_geometry_create(void * device, void * desc, void * geometry)',
 ];
@@ -1013,6 +1021,41 @@ exports.structs = {
       derivative_u_stride: 'uint64_t',
       derivatives_v: 'void *',
       derivative_v_stride: 'uint64_t',
+    },
+  },
+  kiwami_tetrahedra_desc: {
+    size: 56,
+    fields: {
+      struct_size: 'uint32_t',
+      method: 'uint32_t',
+      vertices: 'void *',
+      vertex_stride: 'uint64_t',
+      vertex_count: 'uint64_t',
+      indices: 'void *',
+      index_stride: 'uint64_t',
+      tetrahedron_count: 'uint64_t',
+    },
+  },
+  kiwami_tetrahedra_info: {
+    size: 72,
+    fields: {
+      struct_size: 'uint32_t',
+      method: 'uint32_t',
+      tetrahedron_count: 'uint64_t',
+      skipped_count: 'uint64_t',
+      inverted_count: 'uint64_t',
+      face_count: 'uint64_t',
+      boundary_face_count: 'uint64_t',
+      crowded_face_count: 'uint64_t',
+      bytes: 'uint64_t',
+      build_seconds: 'double',
+    },
+  },
+  kiwami_tetrahedron_location: {
+    size: 20,
+    fields: {
+      tetrahedron_id: 'uint32_t',
+      weights: 'float [4]',
     },
   },
   kiwami_user_hit: {

@@ -158,6 +158,8 @@ KIWAMI_OPACITY_2_STATES = 1
 KIWAMI_OPACITY_4_STATES = 2
 KIWAMI_OPACITY_MAX_LEVEL = 6
 KIWAMI_SHAPES_SHARE_BUFFERS = 1
+KIWAMI_TETRAHEDRA_BOXES = 0
+KIWAMI_TETRAHEDRA_FACES = 1
 KIWAMI_USER_HITS_PER_PRIMITIVE = 4
 
 kiwami_parallel_task = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)
@@ -933,6 +935,41 @@ class kiwami_interpolation(ctypes.Structure):
     ]
 
 
+class kiwami_tetrahedra_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("method", ctypes.c_uint32),
+        ("vertices", ctypes.c_void_p),
+        ("vertex_stride", ctypes.c_uint64),
+        ("vertex_count", ctypes.c_uint64),
+        ("indices", ctypes.c_void_p),
+        ("index_stride", ctypes.c_uint64),
+        ("tetrahedron_count", ctypes.c_uint64),
+    ]
+
+
+class kiwami_tetrahedra_info(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("method", ctypes.c_uint32),
+        ("tetrahedron_count", ctypes.c_uint64),
+        ("skipped_count", ctypes.c_uint64),
+        ("inverted_count", ctypes.c_uint64),
+        ("face_count", ctypes.c_uint64),
+        ("boundary_face_count", ctypes.c_uint64),
+        ("crowded_face_count", ctypes.c_uint64),
+        ("bytes", ctypes.c_uint64),
+        ("build_seconds", ctypes.c_double),
+    ]
+
+
+class kiwami_tetrahedron_location(ctypes.Structure):
+    _fields_ = [
+        ("tetrahedron_id", ctypes.c_uint32),
+        ("weights", ctypes.c_float * 4),
+    ]
+
+
 class kiwami_user_hit(ctypes.Structure):
     _fields_ = [
         ("t", ctypes.c_float),
@@ -1027,6 +1064,9 @@ SIZES = {
     kiwami_discs_desc: 72,
     kiwami_curves_desc: 80,
     kiwami_interpolation: 184,
+    kiwami_tetrahedra_desc: 56,
+    kiwami_tetrahedra_info: 72,
+    kiwami_tetrahedron_location: 20,
     kiwami_user_hit: 32,
     kiwami_user_intersection: 48,
     kiwami_user_geometry_desc: 56,
@@ -1504,6 +1544,29 @@ def declare(library):
         ctypes.c_size_t,
         ctypes.c_size_t,
         ctypes.c_void_p,
+        ctypes.c_size_t,
+    ]
+    library.kiwami_tetrahedra_desc_init.restype = ctypes.c_int32
+    library.kiwami_tetrahedra_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_tetrahedra_create.restype = ctypes.c_int32
+    library.kiwami_tetrahedra_create.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_tetrahedra_retain.restype = None
+    library.kiwami_tetrahedra_retain.argtypes = [ctypes.c_void_p]
+    library.kiwami_tetrahedra_release.restype = None
+    library.kiwami_tetrahedra_release.argtypes = [ctypes.c_void_p]
+    library.kiwami_tetrahedra_get_info.restype = ctypes.c_int32
+    library.kiwami_tetrahedra_get_info.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_tetrahedra_locate.restype = ctypes.c_int32
+    library.kiwami_tetrahedra_locate.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
         ctypes.c_size_t,
     ]
     library.kiwami_user_geometry_desc_init.restype = ctypes.c_int32

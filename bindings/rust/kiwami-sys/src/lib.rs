@@ -162,6 +162,8 @@ pub const KIWAMI_OPACITY_2_STATES: u32 = 1;
 pub const KIWAMI_OPACITY_4_STATES: u32 = 2;
 pub const KIWAMI_OPACITY_MAX_LEVEL: u32 = 6;
 pub const KIWAMI_SHAPES_SHARE_BUFFERS: u32 = 1;
+pub const KIWAMI_TETRAHEDRA_BOXES: u32 = 0;
+pub const KIWAMI_TETRAHEDRA_FACES: u32 = 1;
 pub const KIWAMI_USER_HITS_PER_PRIMITIVE: u32 = 4;
 
 #[repr(C)]
@@ -191,6 +193,11 @@ pub struct kiwami_light_tree {
 
 #[repr(C)]
 pub struct kiwami_scene {
+    _private: [u8; 0],
+}
+
+#[repr(C)]
+pub struct kiwami_tetrahedra {
     _private: [u8; 0],
 }
 
@@ -1005,6 +1012,44 @@ const _: () = assert!(std::mem::size_of::<kiwami_interpolation>() == 184);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct kiwami_tetrahedra_desc {
+    pub struct_size: u32,
+    pub method: u32,
+    pub vertices: *const c_void,
+    pub vertex_stride: u64,
+    pub vertex_count: u64,
+    pub indices: *const c_void,
+    pub index_stride: u64,
+    pub tetrahedron_count: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_tetrahedra_desc>() == 56);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_tetrahedra_info {
+    pub struct_size: u32,
+    pub method: u32,
+    pub tetrahedron_count: u64,
+    pub skipped_count: u64,
+    pub inverted_count: u64,
+    pub face_count: u64,
+    pub boundary_face_count: u64,
+    pub crowded_face_count: u64,
+    pub bytes: u64,
+    pub build_seconds: f64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_tetrahedra_info>() == 72);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_tetrahedron_location {
+    pub tetrahedron_id: u32,
+    pub weights: [f32; 4],
+}
+const _: () = assert!(std::mem::size_of::<kiwami_tetrahedron_location>() == 20);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct kiwami_user_hit {
     pub t: f32,
     pub u: f32,
@@ -1160,6 +1205,12 @@ extern "C" {
     pub fn kiwami_interpolate(mesh: *const kiwami_geometry, interpolation: *const kiwami_interpolation, count: usize) -> kiwami_result;
     pub fn kiwami_hit_points(scene: *const kiwami_scene, hits: *const kiwami_hit, hit_stride: usize, count: usize, points: *mut f32, point_stride: usize, errors: *mut f32, error_stride: usize) -> kiwami_result;
     pub fn kiwami_offset_origins(scene: *const kiwami_scene, hits: *const kiwami_hit, hit_stride: usize, directions: *const f32, direction_stride: usize, count: usize, origins: *mut f32, origin_stride: usize) -> kiwami_result;
+    pub fn kiwami_tetrahedra_desc_init(desc: *mut kiwami_tetrahedra_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_tetrahedra_create(device: *mut kiwami_device, desc: *const kiwami_tetrahedra_desc, tetrahedra: *mut *mut kiwami_tetrahedra) -> kiwami_result;
+    pub fn kiwami_tetrahedra_retain(tetrahedra: *mut kiwami_tetrahedra);
+    pub fn kiwami_tetrahedra_release(tetrahedra: *mut kiwami_tetrahedra);
+    pub fn kiwami_tetrahedra_get_info(tetrahedra: *const kiwami_tetrahedra, info: *mut kiwami_tetrahedra_info) -> kiwami_result;
+    pub fn kiwami_tetrahedra_locate(tetrahedra: *const kiwami_tetrahedra, points: *const c_void, point_stride: usize, locations: *mut kiwami_tetrahedron_location, location_stride: usize, count: usize) -> kiwami_result;
     pub fn kiwami_user_geometry_desc_init(desc: *mut kiwami_user_geometry_desc, size: usize) -> kiwami_result;
     pub fn kiwami_user_geometry_create(device: *mut kiwami_device, desc: *const kiwami_user_geometry_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
 }

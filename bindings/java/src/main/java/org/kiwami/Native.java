@@ -163,6 +163,8 @@ final class Native {
   static final int KIWAMI_OPACITY_4_STATES = 2;
   static final int KIWAMI_OPACITY_MAX_LEVEL = 6;
   static final int KIWAMI_SHAPES_SHARE_BUFFERS = 1;
+  static final int KIWAMI_TETRAHEDRA_BOXES = 0;
+  static final int KIWAMI_TETRAHEDRA_FACES = 1;
   static final int KIWAMI_USER_HITS_PER_PRIMITIVE = 4;
 
   /** Offsets of kiwami_device_desc. */
@@ -886,6 +888,41 @@ final class Native {
     static final int DERIVATIVE_V_STRIDE = 176;
   }
 
+  /** Offsets of kiwami_tetrahedra_desc. */
+  static final class TetrahedraDesc {
+    static final int STRUCT_BYTES = 56;
+    static final int STRUCT_SIZE = 0;
+    static final int METHOD = 4;
+    static final int VERTICES = 8;
+    static final int VERTEX_STRIDE = 16;
+    static final int VERTEX_COUNT = 24;
+    static final int INDICES = 32;
+    static final int INDEX_STRIDE = 40;
+    static final int TETRAHEDRON_COUNT = 48;
+  }
+
+  /** Offsets of kiwami_tetrahedra_info. */
+  static final class TetrahedraInfo {
+    static final int STRUCT_BYTES = 72;
+    static final int STRUCT_SIZE = 0;
+    static final int METHOD = 4;
+    static final int TETRAHEDRON_COUNT = 8;
+    static final int SKIPPED_COUNT = 16;
+    static final int INVERTED_COUNT = 24;
+    static final int FACE_COUNT = 32;
+    static final int BOUNDARY_FACE_COUNT = 40;
+    static final int CROWDED_FACE_COUNT = 48;
+    static final int BYTES = 56;
+    static final int BUILD_SECONDS = 64;
+  }
+
+  /** Offsets of kiwami_tetrahedron_location. */
+  static final class TetrahedronLocation {
+    static final int STRUCT_BYTES = 20;
+    static final int TETRAHEDRON_ID = 0;
+    static final int WEIGHTS = 4;
+  }
+
   /** Offsets of kiwami_user_hit. */
   static final class UserHit {
     static final int STRUCT_BYTES = 32;
@@ -1154,6 +1191,18 @@ final class Native {
   static native int kiwami_hit_points(Pointer scene, Pointer hits, long hitStride, long count, Pointer points, long pointStride, Pointer errors, long errorStride);
 
   static native int kiwami_offset_origins(Pointer scene, Pointer hits, long hitStride, Pointer directions, long directionStride, long count, Pointer origins, long originStride);
+
+  static native int kiwami_tetrahedra_desc_init(Pointer desc, long size);
+
+  static native int kiwami_tetrahedra_create(Pointer device, Pointer desc, Pointer tetrahedra);
+
+  static native void kiwami_tetrahedra_retain(Pointer tetrahedra);
+
+  static native void kiwami_tetrahedra_release(Pointer tetrahedra);
+
+  static native int kiwami_tetrahedra_get_info(Pointer tetrahedra, Pointer info);
+
+  static native int kiwami_tetrahedra_locate(Pointer tetrahedra, Pointer points, long pointStride, Pointer locations, long locationStride, long count);
 
   static native int kiwami_user_geometry_desc_init(Pointer desc, long size);
 
