@@ -202,15 +202,20 @@ enum {
   KIWAMI_LIGHT_METHOD_ROULETTE = 6
 };
 
-/* With which probability ROULETTE and LAZY_ROULETTE accept a light: in proportion to its energy
- * over its squared distance times, of directions from the receiver to the light, the greatest of:
- */
+/* What of the receiver counts, in proportion to which ROULETTE and LAZY_ROULETTE accept a light, and
+ * TREE, TREE_SPLITTING and LIGHTCUTS choose: beside energy and squared distance, of directions from
+ * the receiver to the light (to the lights of a node), the greatest of: */
 enum {
   /* The cosine at the receiver (Dachsbacher's lobe). */
   KIWAMI_LIGHT_LOBE_COSINE = 0,
-  /* The square of that cosine: lights within a sphere that touches the tangent plane. */
+  /* The square of that cosine: lights within a sphere that touches the tangent plane. Of the
+   * roulettes; as COSINE with others. */
   KIWAMI_LIGHT_LOBE_TANGENT_SPHERE = 1,
-  /* A squared ellipsoidal lobe around the receiver's mirror direction, for what is glossy. */
+  /* A squared ellipsoidal lobe around the receiver's mirror direction, for what is glossy: lights
+   * are chosen by what the receiver reflects of them. No light above the tangent plane has a
+   * probability of 0. Of receivers that are diffuse, too, let some of the choices be made with
+   * COSINE, and weigh both by their probabilities (kiwami_light_pdf; E. Veach's balance
+   * heuristic). */
   KIWAMI_LIGHT_LOBE_GLOSSY = 2
 };
 
@@ -223,7 +228,8 @@ enum {
 /* The lobe of a glossy receiver. 16 bytes, at any address. */
 typedef struct kiwami_light_lobe {
   float axis[3];   /* away from the receiver, of any length, where the lobe has its peak: the mirror
-                    * direction. Not finite or of length 0: the receiver has the lobe COSINE. */
+                    * direction. Not finite or of length 0: the receiver has the lobe COSINE, as
+                    * all segments have. */
   float roughness; /* GGX's alpha; less than 0.001 counts as that, more than 1 as 1 */
 } kiwami_light_lobe;
 
@@ -242,7 +248,7 @@ typedef struct kiwami_light_query {
                          * KIWAMI_LIGHT_MAX_CHOICES */
   float threshold;      /* of TREE_SPLITTING, 0 to 1: 0 splits nothing, 1 splits all that there is
                          * room for; 0.5 */
-  uint32_t lobe;        /* of ROULETTE and LAZY_ROULETTE: KIWAMI_LIGHT_LOBE_* */
+  uint32_t lobe;        /* KIWAMI_LIGHT_LOBE_*; of POWER and CULLING not read */
   uint32_t order;       /* of LAZY_ROULETTE: KIWAMI_LIGHT_ORDER_* */
   float reach; /* of CULLING, 0 or more: at this distance of a receiver from all lights half
                 * of max_choices are accepted. 0: the radius of all lights' box over the

@@ -143,9 +143,24 @@ inline bool normalise(float (&a)[3]) {
   return true;
 }
 
-/// A caller's receiver; false for one that gets no light.
-inline bool read_receiver(const kiwami_light_receiver& receiver, bool is_lightcut,
+/// The lobe of a receiver; one without a direction is as if there were none. By the same numbers as
+/// that of the roulettes.
+inline void read_lobe(const kiwami_light_lobe& lobe, LightPoint& point) {
+  for (int i = 0; i < 3; ++i) point.lobe_axis[i] = lobe.axis[i];
+  if (!are_finite(lobe.axis) || !normalise(point.lobe_axis)) return;
+  const double given = static_cast<double>(lobe.roughness);
+  // Not a number counts as 1.
+  const double alpha = given < 1.0 ? given > 1e-3 ? given : 1e-3 : 1.0;
+  const double square = alpha * alpha;
+  point.lobe_eccentricity = static_cast<float>((1.0 - square) / (1.0 + square));
+  point.lobe_least = static_cast<float>(2.0 * square / (1.0 + square));
+  point.has_lobe = true;
+}
+
+/// A receiver of a batch, its lobe and all; false for one that gets no light.
+inline bool read_receiver(const LightBatch& batch, size_t number, kiwami_light_receiver& receiver,
                           LightPoint& point) {
+  __builtin_memcpy(&receiver, batch.receivers + number * batch.receiver_stride, sizeof receiver);
   if (!are_coordinates(receiver.position)) return false;
   if (!are_finite(receiver.normal) || !are_finite(receiver.segment)) return false;
   float end[3];
@@ -158,8 +173,14 @@ inline bool read_receiver(const kiwami_light_receiver& receiver, bool is_lightcu
     has_segment = has_segment || receiver.segment[i] != 0.0f;
   }
   point.slack = 0.0f;
-  point.is_lightcut = is_lightcut;
+  point.is_lightcut = batch.is_lightcut;
   point.has_segment = has_segment;
+  point.has_lobe = false;
+  if (batch.lobes && !has_segment) {
+    kiwami_light_lobe lobe;
+    __builtin_memcpy(&lobe, batch.lobes + number * batch.lobe_stride, sizeof lobe);
+    read_lobe(lobe, point);
+  }
   point.has_normal = normalise(point.normal) && !has_segment;
   point.takes_both_sides = (receiver.flags & KIWAMI_RECEIVER_BOTH_SIDES) != 0;
   point.link_mask = receiver.link_mask;
@@ -184,9 +205,27 @@ inline LightPoint transformed(const LightPoint& point, const LightInstanceView& 
         row[0] * point.segment[0] + row[1] * point.segment[1] + row[2] * point.segment[2];
     local.normal[i] = normal_row[0] * point.normal[0] + normal_row[1] * point.normal[1] +
                       normal_row[2] * point.normal[2];
+    if (point.has_lobe) {
+      local.lobe_axis[i] =
+          row[0] * point.lobe_axis[0] + row[1] * point.lobe_axis[1] + row[2] * point.lobe_axis[2];
+    }
   }
   if (point.has_normal) local.has_normal = normalise(local.normal);
+  if (point.has_lobe) local.has_lobe = normalise(local.lobe_axis);
   return local;
+}
+
+/// The greatest cosine between a direction and those to a distant light.
+inline float cosine_to_distant(const DistantLightView& light, float cosine) {
+  if (cosine >= light.cos_spread) return 1.0f;
+  const float square = (1.0f - cosine) * (1.0f + cosine);
+  const float sine = square > 0.0f ? __builtin_sqrtf(square) : 0.0f;
+  return cosine * light.cos_spread + sine * light.sin_spread;
+}
+
+inline float dot_with(const DistantLightView& light, const float (&direction)[3]) {
+  return light.direction[0] * direction[0] + light.direction[1] * direction[1] +
+         light.direction[2] * direction[2];
 }
 
 /// What a distant light or an environment can contribute.
@@ -194,17 +233,22 @@ inline float distant_importance(const DistantLightView& light, const LightPoint&
   if ((light.link_mask & point.link_mask) == 0) return 0.0f;
   const bool is_environment =
       light.direction[0] == 0.0f && light.direction[1] == 0.0f && light.direction[2] == 0.0f;
-  if (!point.has_normal || is_environment) return light.energy;
-  const float cosine = light.direction[0] * point.normal[0] + light.direction[1] * point.normal[1] +
-                       light.direction[2] * point.normal[2];
-  const float towards = point.takes_both_sides ? __builtin_fabsf(cosine) : cosine;
-  const float square = (1.0f - towards) * (1.0f + towards);
-  const float sine = square > 0.0f ? __builtin_sqrtf(square) : 0.0f;
-  // The cosine of the angle less the light's own.
-  const float greatest =
-      towards >= light.cos_spread ? 1.0f : towards * light.cos_spread + sine * light.sin_spread;
-  if (greatest < -kPointCosineSlack) return 0.0f;
-  const float importance = light.energy * (greatest > 0.0f ? greatest : 0.0f);
+  if (is_environment) return light.energy;
+  float factor = 1.0f;
+  if (point.has_normal) {
+    const float cosine = dot_with(light, point.normal);
+    const float greatest =
+        cosine_to_distant(light, point.takes_both_sides ? __builtin_fabsf(cosine) : cosine);
+    if (greatest < -kPointCosineSlack) return 0.0f;
+    factor = greatest > 0.0f ? greatest : 0.0f;
+  }
+  if (point.has_lobe) {
+    const float away = 1.0f - cosine_to_distant(light, dot_with(light, point.lobe_axis));
+    const float radius = point.lobe_least /
+                         (point.lobe_least + point.lobe_eccentricity * (away > 0.0f ? away : 0.0f));
+    factor = radius * radius;
+  }
+  const float importance = light.energy * factor;
   const float least = light.energy < kLeastImportance ? light.energy : kLeastImportance;
   return importance > least ? importance : least;
 }
@@ -303,11 +347,12 @@ inline void finish(const LightTreeView& tree, const LightPoint& point, LightShar
 }
 
 template <int N>
-inline void sample_one(const LightTreeView& tree, const kiwami_light_receiver& receiver,
-                       bool is_lightcut, kiwami_light_choice& choice) {
+inline void sample_one(const LightTreeView& tree, const LightBatch& batch, size_t i,
+                       kiwami_light_choice& choice) {
   write_none(choice);
+  kiwami_light_receiver receiver;
   LightPoint point;
-  if (!read_receiver(receiver, is_lightcut, point)) return;
+  if (!read_receiver(batch, i, receiver, point)) return;
   LightShares<N> shares;
   double total = 0.0;
   if (tree.node_count != 0) {
@@ -395,10 +440,11 @@ inline double tree_pdf(const LightTreeView& tree, const LightPoint& point, uint3
 }
 
 template <int N>
-inline float pdf_of(const LightTreeView& tree, const kiwami_light_receiver& receiver,
-                    bool is_lightcut, const kiwami_light_name& name) {
+inline float pdf_of(const LightTreeView& tree, const LightBatch& batch, size_t i,
+                    const kiwami_light_name& name) {
+  kiwami_light_receiver receiver;
   LightPoint point;
-  if (!read_receiver(receiver, is_lightcut, point) || !is_name_of_light(tree, name)) return 0.0f;
+  if (!read_receiver(batch, i, receiver, point) || !is_name_of_light(tree, name)) return 0.0f;
   const double distant_total = total_distant_importance(tree, point);
   double distant = 0.0;
   if (distant_total > 0.0) {
@@ -420,10 +466,8 @@ inline float pdf_of(const LightTreeView& tree, const kiwami_light_receiver& rece
 template <int N>
 void sample_batch(const LightTreeView& tree, const LightBatch& batch) {
   for (size_t i = 0; i < batch.count; ++i) {
-    kiwami_light_receiver receiver;
     kiwami_light_choice choice;
-    __builtin_memcpy(&receiver, batch.receivers + i * batch.receiver_stride, sizeof receiver);
-    sample_one<N>(tree, receiver, batch.is_lightcut, choice);
+    sample_one<N>(tree, batch, i, choice);
     __builtin_memcpy(batch.answers + i * batch.answer_stride, &choice, sizeof choice);
   }
 }
@@ -431,11 +475,9 @@ void sample_batch(const LightTreeView& tree, const LightBatch& batch) {
 template <int N>
 void pdf_batch(const LightTreeView& tree, const LightBatch& batch) {
   for (size_t i = 0; i < batch.count; ++i) {
-    kiwami_light_receiver receiver;
     kiwami_light_name name;
-    __builtin_memcpy(&receiver, batch.receivers + i * batch.receiver_stride, sizeof receiver);
     __builtin_memcpy(&name, batch.names + i * batch.name_stride, sizeof name);
-    const float probability = pdf_of<N>(tree, receiver, batch.is_lightcut, name);
+    const float probability = pdf_of<N>(tree, batch, i, name);
     __builtin_memcpy(batch.answers + i * batch.answer_stride, &probability, sizeof probability);
   }
 }

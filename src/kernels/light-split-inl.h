@@ -278,11 +278,12 @@ inline bool prepare_cut(const LightTreeView& tree, const LightPoint& point, Spli
 }
 
 template <int N>
-inline void split_one(const LightTreeView& tree, const LightBatch& batch,
-                      const kiwami_light_receiver& receiver, kiwami_light_choice* choices) {
+inline void split_one(const LightTreeView& tree, const LightBatch& batch, size_t number,
+                      kiwami_light_choice* choices) {
   for (uint32_t i = 0; i < batch.max_choices; ++i) write_none(choices[i]);
+  kiwami_light_receiver receiver;
   LightPoint point;
-  if (!read_receiver(receiver, batch.is_lightcut, point)) return;
+  if (!read_receiver(batch, number, receiver, point)) return;
   SplitPoints points;
   LightCut cut;
   double distant_total;
@@ -316,11 +317,11 @@ inline double branch_probability(SplitPoints& points, LightBranch branch,
 }
 
 template <int N>
-inline float split_pdf_of(const LightTreeView& tree, const LightBatch& batch,
-                          const kiwami_light_receiver& receiver, const kiwami_light_name& name) {
+inline float split_pdf_of(const LightTreeView& tree, const LightBatch& batch, size_t number,
+                          const kiwami_light_name& name) {
+  kiwami_light_receiver receiver;
   LightPoint point;
-  if (!read_receiver(receiver, batch.is_lightcut, point) || !is_name_of_light(tree, name))
-    return 0.0f;
+  if (!read_receiver(batch, number, receiver, point) || !is_name_of_light(tree, name)) return 0.0f;
   SplitPoints points;
   LightCut cut;
   double distant_total;
@@ -338,10 +339,8 @@ inline float split_pdf_of(const LightTreeView& tree, const LightBatch& batch,
 template <int N>
 void split_batch(const LightTreeView& tree, const LightBatch& batch) {
   for (size_t i = 0; i < batch.count; ++i) {
-    kiwami_light_receiver receiver;
     kiwami_light_choice choices[kMaxLightChoices];
-    __builtin_memcpy(&receiver, batch.receivers + i * batch.receiver_stride, sizeof receiver);
-    split_one<N>(tree, batch, receiver, choices);
+    split_one<N>(tree, batch, i, choices);
     for (uint32_t k = 0; k < batch.max_choices; ++k) {
       __builtin_memcpy(batch.answers + (i * batch.max_choices + k) * batch.answer_stride,
                        &choices[k], sizeof choices[k]);
@@ -352,11 +351,9 @@ void split_batch(const LightTreeView& tree, const LightBatch& batch) {
 template <int N>
 void split_pdf_batch(const LightTreeView& tree, const LightBatch& batch) {
   for (size_t i = 0; i < batch.count; ++i) {
-    kiwami_light_receiver receiver;
     kiwami_light_name name;
-    __builtin_memcpy(&receiver, batch.receivers + i * batch.receiver_stride, sizeof receiver);
     __builtin_memcpy(&name, batch.names + i * batch.name_stride, sizeof name);
-    const float probability = split_pdf_of<N>(tree, batch, receiver, name);
+    const float probability = split_pdf_of<N>(tree, batch, i, name);
     __builtin_memcpy(batch.answers + i * batch.answer_stride, &probability, sizeof probability);
   }
 }

@@ -30,7 +30,7 @@ struct LightBatch {
   /// Whether children are compared, and cuts are made, as by stochastic lightcuts.
   bool is_lightcut;
 
-  // Of the roulettes, which are no kernels.
+  // Of glossy receivers, in kernels and in the roulettes, which are none.
   const unsigned char* lobes = nullptr;  ///< kiwami_light_lobe, or null
   size_t lobe_stride = 0;
 };

@@ -37,6 +37,24 @@ TEST(LightCommand, BenchComparesMethodsAndWidths) {
   EXPECT_LT(errors["lazy_roulette"], errors["power"]);
 }
 
+TEST(LightCommand, GlossyReceiversGainByTheirLobe) {
+  const TemporaryFolder folder;
+  const CommandResult result = run_command(
+      {"bench", "--lights", "room:2000", "--light-share", "0.3", "--light-receivers", "256",
+       "--light-samples", "16", "--light-widths", "8", "--light-roughness", "0.1", "--rounds", "1",
+       "--light-methods", "power,tree,tree_glossy,tree_mixed,roulette,roulette_glossy", "--json",
+       folder / "rows.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
+  std::map<std::string, double> errors;
+  for (const Json& row : Json::parse(read_bytes(folder / "rows.json"), nullptr, false)) {
+    errors[row.at("method")] = row.at("mse").get<double>();
+  }
+  ASSERT_EQ(errors.size(), 6u);
+  EXPECT_LT(errors["tree_glossy"], errors["tree"]);
+  EXPECT_LT(errors["tree_mixed"], errors["tree"]);
+  EXPECT_LT(errors["roulette_glossy"], errors["roulette"]);
+}
+
 TEST(LightCommand, PicturesAreTheSameOnEveryIsaAndNumberOfThreads) {
   const TemporaryFolder folder;
   const auto render = [&](const std::vector<std::string>& options) {
@@ -58,6 +76,13 @@ TEST(LightCommand, PicturesAreTheSameOnEveryIsaAndNumberOfThreads) {
         << method;
   }
   EXPECT_FALSE(render({"--lights", "tree"}) == render({"--lights", "power"}));
+  for (const char* method : {"tree_glossy", "tree_mixed", "lightcuts_glossy"}) {
+    const std::vector<std::string> glossy = {"--lights", method,        "--light-roughness",
+                                             "0.2",      "--bvh-width", "8"};
+    std::vector<std::string> scalar = glossy;
+    scalar.insert(scalar.end(), {"--isa", "scalar"});
+    EXPECT_TRUE(render(glossy) == render(scalar)) << method;
+  }
 }
 
 TEST(LightCommand, WrongArgumentsAreRefusedInOneSentence) {
@@ -65,6 +90,9 @@ TEST(LightCommand, WrongArgumentsAreRefusedInOneSentence) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {{"bench", "--lights", "sphere:1", "--light-methods", "sun"}, "sun"},
       {{"bench", "--lights", "sphere:1", "--light-widths", "3"}, "--light-widths"},
+      {{"bench", "--lights", "sphere:1", "--light-methods", "tree_glossy"}, "--light-roughness"},
+      {{"render", "sphere:1", "-o", folder / "a.png", "--lights", "tree_mixed"},
+       "--light-roughness"},
       {{"bench", "--lights", "sphere:1", "--light-share", "2"}, "--light-share"},
       {{"bench", "--lights", "sphere:1", "--light-share", "0"}, "no triangle"},
       {{"render", "sphere:1", "-o", folder / "a.png", "--lights", "candles"}, "candles"},

@@ -16,10 +16,10 @@
 namespace kiwami::tools {
 namespace {
 
-std::vector<const LightMethodName*> parse_methods(const std::string& text) {
+std::vector<const LightMethodName*> parse_methods(const std::string& text, bool is_glossy) {
   std::vector<const LightMethodName*> methods;
   for (const LightMethodName& method : light_methods()) {
-    if (text.empty()) methods.push_back(&method);
+    if (text.empty() && (is_glossy || !method.is_glossy())) methods.push_back(&method);
   }
   if (text.empty()) return methods;
   for (const std::string& word : split_words("--light-methods", text)) {
@@ -27,6 +27,10 @@ std::vector<const LightMethodName*> parse_methods(const std::string& text) {
     if (!method) {
       throw UsageError("--light-methods has '" + word + "', expected some of " +
                        light_method_list());
+    }
+    if (method->is_glossy() && !is_glossy) {
+      throw UsageError("--light-methods has '" + word +
+                       "', which is for glossy receivers, expected --light-roughness above 0");
     }
     methods.push_back(method);
   }
@@ -48,19 +52,40 @@ bool has_wide_tree(const LightMethodName& method) {
   return method.method != KIWAMI_LIGHT_METHOD_POWER && !method.is_roulette();
 }
 
+/// The points that ask for light, and how they reflect it.
+struct Receivers {
+  std::vector<kiwami_light_receiver> points;
+  std::vector<GlossySurface> surfaces;   ///< of each; none where they are diffuse
+  std::vector<kiwami_light_lobe> lobes;  ///< of each; none where they are diffuse
+
+  double contribution(const EmissiveTriangle& light, size_t i) const {
+    const kiwami_light_receiver& point = points[i];
+    const Vec3 at{point.position[0], point.position[1], point.position[2]};
+    const Vec3 from = light.middle();
+    if (!surfaces.empty()) {
+      return static_cast<double>(light.area * light.sent(from, at) *
+                                 surfaces[i].reflected(from - at));
+    }
+    const Vec3 normal{point.normal[0], point.normal[1], point.normal[2]};
+    return static_cast<double>(light.area * light.arriving(from, at, normal));
+  }
+};
+
 /// One method on one tree, on the same receivers as all others.
 class LightRun {
  public:
   LightRun(const LightMethodName& method, const Device& device,
-           const std::vector<EmissiveTriangle>& lights, uint32_t width)
+           const std::vector<EmissiveTriangle>& lights, const Receivers& receivers, uint32_t width)
       : method_(method),
         device_(device),
         lights_(lights),
+        receivers_(receivers),
         set_(device, lights, width, method.is_roulette()) {}
 
   /// Estimates what each receiver gets, `draws` calls of the method together. What is kept is
   /// timed: the choices, and the contributions that they ask for.
-  void run(std::vector<kiwami_light_receiver> receivers, uint32_t draws) {
+  void run(uint32_t draws) {
+    std::vector<kiwami_light_receiver> receivers = receivers_.points;
     estimates_.assign(receivers.size(), 0.0);
     choice_count_ = 0;
     std::vector<kiwami_light_choice> choices(receivers.size() * method_.max_choices);
@@ -69,9 +94,9 @@ class LightRun {
       for (kiwami_light_receiver& receiver : receivers) {
         receiver.random = (static_cast<double>(random.next()) + random.uniform()) * 0x1p-32;
       }
-      set_.sample(method_, receivers, choices);
+      set_.sample(method_, receivers, receivers_.lobes, choices);
       for (size_t i = 0; i < receivers.size(); ++i)
-        estimates_[i] += estimate(receivers[i], &choices[i * method_.max_choices]) / draws;
+        estimates_[i] += estimate(i, &choices[i * method_.max_choices]) / draws;
     }
   }
 
@@ -82,15 +107,12 @@ class LightRun {
   const std::vector<double>& estimates() const { return estimates_; }
 
  private:
-  double estimate(const kiwami_light_receiver& receiver, const kiwami_light_choice* choices) {
-    const Vec3 at{receiver.position[0], receiver.position[1], receiver.position[2]};
-    const Vec3 normal{receiver.normal[0], receiver.normal[1], receiver.normal[2]};
+  double estimate(size_t receiver, const kiwami_light_choice* choices) {
     double sum = 0.0;
     for (uint32_t k = 0; k < method_.max_choices; ++k) {
       if (choices[k].light_id == KIWAMI_INVALID_ID) break;
       const EmissiveTriangle& light = lights_[choices[k].light_id];
-      sum += static_cast<double>(light.area * light.arriving(light.middle(), at, normal)) /
-             static_cast<double>(choices[k].probability);
+      sum += receivers_.contribution(light, receiver) / static_cast<double>(choices[k].probability);
       ++choice_count_;
     }
     return sum;
@@ -99,6 +121,7 @@ class LightRun {
   const LightMethodName& method_;
   const Device& device_;
   const std::vector<EmissiveTriangle>& lights_;
+  const Receivers& receivers_;
   LightSet set_;
   std::vector<double> estimates_;
   uint64_t choice_count_ = 0;
@@ -125,17 +148,18 @@ class LightBench {
     std::vector<std::unique_ptr<LightRun>> runs;
     for (const uint32_t isa : settings_.isas) {
       devices.push_back(std::make_unique<Device>(isa, 1));
-      for (const LightMethodName* method : parse_methods(options_.methods)) {
+      for (const LightMethodName* method :
+           parse_methods(options_.methods, options_.roughness > 0.0)) {
         for (const uint32_t width : widths_of(*method)) {
-          runs.push_back(std::make_unique<LightRun>(*method, *devices.back(), lights_, width));
+          runs.push_back(
+              std::make_unique<LightRun>(*method, *devices.back(), lights_, receivers_, width));
         }
       }
     }
     std::vector<Contender> contenders;
     for (const auto& run : runs) {
       LightRun* const each = run.get();
-      contenders.push_back(
-          {[] {}, [this, each] { each->run(receivers_, options_.samples); }, [] {}});
+      contenders.push_back({[] {}, [this, each] { each->run(options_.samples); }, [] {}});
     }
     const auto seconds = interleaved_seconds(contenders, settings_.rounds, settings_.clock);
     double power_seconds = 0.0;
@@ -163,32 +187,39 @@ class LightBench {
     for (size_t i = 0; i < hits.size(); ++i) {
       if (!is_hit(hits[i])) continue;
       const Surface surface = surface_of(rays.rays[i], hits[i]);
-      receivers_.push_back(receiver_at(surface.point, surface.normal, 0.0));
+      receivers_.points.push_back(receiver_at(surface.point, surface.normal, 0.0));
+      if (!(options_.roughness > 0.0)) continue;
+      const Vec3 way =
+          Vec3{rays.rays[i].direction_x, rays.rays[i].direction_y, rays.rays[i].direction_z};
+      receivers_.surfaces.push_back(
+          {surface.normal, way * (-1.0f / length(way)), static_cast<float>(options_.roughness)});
+      receivers_.lobes.push_back(receivers_.surfaces.back().lobe());
     }
   }
 
   /// Keeps the receivers that get light at all.
   void find_references() {
     size_t kept = 0;
-    for (const kiwami_light_receiver& receiver : receivers_) {
-      const Vec3 at{receiver.position[0], receiver.position[1], receiver.position[2]};
-      const Vec3 normal{receiver.normal[0], receiver.normal[1], receiver.normal[2]};
+    for (size_t i = 0; i < receivers_.points.size(); ++i) {
       double sum = 0.0;
-      for (const EmissiveTriangle& light : lights_) {
-        sum += static_cast<double>(light.area * light.arriving(light.middle(), at, normal));
-      }
+      for (const EmissiveTriangle& light : lights_) sum += receivers_.contribution(light, i);
       if (!(sum > 0.0)) continue;
       references_.push_back(sum);
-      receivers_[kept++] = receiver;
+      receivers_.points[kept] = receivers_.points[i];
+      if (!receivers_.surfaces.empty()) {
+        receivers_.surfaces[kept] = receivers_.surfaces[i];
+        receivers_.lobes[kept] = receivers_.lobes[i];
+      }
+      ++kept;
     }
-    receivers_.resize(kept);
+    receivers_.points.resize(kept);
   }
 
   LightRow row_of(const LightRun& run, double seconds, double power_seconds) const {
     const auto choices = static_cast<double>(run.choice_count());
-    const auto count = static_cast<double>(receivers_.size());
+    const auto count = static_cast<double>(receivers_.points.size());
     double sum = 0.0;
-    for (size_t i = 0; i < receivers_.size(); ++i) {
+    for (size_t i = 0; i < receivers_.points.size(); ++i) {
       const double relative = run.estimates()[i] / references_[i] - 1.0;
       sum += relative * relative;
     }
@@ -199,7 +230,7 @@ class LightBench {
     const kiwami_light_tree_info& info = run.info();
     return {name_,
             lights_.size(),
-            receivers_.size(),
+            receivers_.points.size(),
             run.method().name,
             kiwami_isa_name(run.device().info().isa),
             has_wide_tree(run.method()) ? info.width : 0,
@@ -215,7 +246,7 @@ class LightBench {
   const LightBenchOptions& options_;
   const BenchSettings& settings_;
   std::vector<EmissiveTriangle> lights_;
-  std::vector<kiwami_light_receiver> receivers_;
+  Receivers receivers_;
   std::vector<double> references_;  ///< by receiver
 };
 
@@ -223,7 +254,7 @@ class LightBench {
 
 void run_lights(const std::string& scene, const LightBenchOptions& options,
                 const BenchSettings& settings, const std::function<void(const LightRow&)>& on_row) {
-  parse_methods(options.methods);
+  parse_methods(options.methods, options.roughness > 0.0);
   parse_widths(options.widths);
   LightBench(scene, options, settings).run(on_row);
 }

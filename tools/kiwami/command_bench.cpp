@@ -203,6 +203,11 @@ void add_light_options(CLI::App& command, LightBenchOptions& options) {
   command.add_option("--light-receivers", options.receiver_count, "Points that the camera sees")
       ->check(whole_number(1, 1u << 24))
       ->capture_default_str();
+  command
+      .add_option("--light-roughness", options.roughness,
+                  "Receivers are glossy: alpha of their GGX distribution; 0: they are diffuse")
+      ->check(finite_number(0.0, 1.0))
+      ->capture_default_str();
 }
 
 void add_measuring_options(CLI::App& command, BenchOptions& options) {

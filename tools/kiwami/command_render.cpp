@@ -28,6 +28,7 @@ struct RenderOptions {
   bool instanced = false;
   std::string lights;  ///< how they are chosen; empty: no lights
   double light_share = 0.1;
+  double light_roughness = 0.0;
   ViewOptions view;
   TraceOptions trace;
   PipelineOptions pipeline;
@@ -47,6 +48,11 @@ void check_options(const RenderOptions& options) {
   parse_size("--size", options.size);
   if (!options.lights.empty() && !find_light_method(options.lights)) {
     throw UsageError("--lights is '" + options.lights + "', expected " + light_method_list());
+  }
+  if (!options.lights.empty() && find_light_method(options.lights)->is_glossy() &&
+      !(options.light_roughness > 0.0)) {
+    throw UsageError("--lights is '" + options.lights +
+                     "', which is for glossy surfaces, expected --light-roughness above 0");
   }
   if (!options.lights.empty() && options.instanced) {
     throw UsageError("--lights goes without --instanced");
@@ -88,9 +94,9 @@ std::unique_ptr<BuiltScene> make_scene(const RenderOptions& options, const Devic
 std::unique_ptr<DirectLight> make_light(const RenderOptions& options, const Device& device,
                                         const SceneFile& file) {
   if (options.lights.empty()) return nullptr;
-  auto light =
-      std::make_unique<DirectLight>(device, file, options.light_share,
-                                    *find_light_method(options.lights), options.trace.bvh_width);
+  auto light = std::make_unique<DirectLight>(device, file, options.light_share,
+                                             *find_light_method(options.lights),
+                                             options.trace.bvh_width, options.light_roughness);
   const kiwami_light_tree_info& info = light->set().info();
   std::printf("lights  %s emissive triangles, tree of %.1f ms, %u wide, %.1f bytes per light\n",
               grouped(info.light_count).c_str(), info.build_seconds * 1e3, info.width,
@@ -178,6 +184,11 @@ void add_render_command(CLI::App& app, int& exit_code) {
           light_method_list());
   command
       ->add_option("--light-share", options->light_share, "The part of the triangles that shines")
+      ->check(finite_number(0.0, 1.0))
+      ->capture_default_str();
+  command
+      ->add_option("--light-roughness", options->light_roughness,
+                   "Surfaces are glossy: alpha of their GGX distribution; 0: they are diffuse")
       ->check(finite_number(0.0, 1.0))
       ->capture_default_str();
   add_view_options(*command, options->view);

@@ -23,10 +23,11 @@ Vec3 point_on(const EmissiveTriangle& triangle, float first, float second) {
 }  // namespace
 
 DirectLight::DirectLight(const Device& device, const SceneFile& file, double share,
-                         const LightMethodName& method, uint32_t width)
+                         const LightMethodName& method, uint32_t width, double roughness)
     : triangles_(choose_emissive(file, share)),
       method_(method),
-      set_(device, triangles_, width, method.is_roulette()) {}
+      set_(device, triangles_, width, method.is_roulette()),
+      roughness_(static_cast<float>(roughness)) {}
 
 float DirectLight::radiance_of(const kiwami_hit& hit) const {
   const auto place = std::lower_bound(
@@ -41,11 +42,14 @@ float DirectLight::radiance_of(const kiwami_hit& hit) const {
 }
 
 void DirectLight::choose_targets(std::span<const kiwami_light_receiver> receivers,
+                                 std::span<const GlossySurface> surfaces,
                                  std::span<const size_t> sources, SampleBatch& batch,
                                  std::vector<kiwami_ray>& rays, std::vector<size_t>& targets,
                                  std::vector<float>& amounts) const {
   std::vector<kiwami_light_choice> choices(receivers.size() * method_.max_choices);
-  set_.sample(method_, receivers, choices);
+  std::vector<kiwami_light_lobe> lobes;
+  for (const GlossySurface& surface : surfaces) lobes.push_back(surface.lobe());
+  set_.sample(method_, receivers, lobes, choices);
   for (size_t i = 0; i < receivers.size(); ++i) {
     const Vec3 at{receivers[i].position[0], receivers[i].position[1], receivers[i].position[2]};
     const Vec3 normal{receivers[i].normal[0], receivers[i].normal[1], receivers[i].normal[2]};
@@ -55,8 +59,10 @@ void DirectLight::choose_targets(std::span<const kiwami_light_receiver> receiver
       const EmissiveTriangle& light = triangles_[choice.light_id];
       const Vec3 target =
           point_on(light, static_cast<float>(choice.random), batch.randoms[sources[i]].uniform());
-      const float amount =
-          kAlbedoOverPi * light.area * light.arriving(target, at, normal) / choice.probability;
+      const float sent = surfaces.empty()
+                             ? kAlbedoOverPi * light.arriving(target, at, normal)
+                             : light.sent(target, at) * surfaces[i].reflected(target - at);
+      const float amount = light.area * sent / choice.probability;
       if (!(amount > 0.0f)) continue;
       // Short of the light, which would be in its own way.
       rays.push_back(make_ray(at, target - at, 0.0f, 0.999f));
@@ -70,6 +76,7 @@ void DirectLight::shade(Tracing& tracing, SampleBatch& batch) const {
   std::vector<kiwami_hit> hits(batch.rays.size());
   tracing.closest_hits(batch.rays, hits);
   std::vector<kiwami_light_receiver> receivers;
+  std::vector<GlossySurface> surfaces;
   std::vector<size_t> sources;
   for (size_t i = 0; i < hits.size(); ++i) {
     batch.colors[i] = Vec3{0, 0, 0};
@@ -80,12 +87,17 @@ void DirectLight::shade(Tracing& tracing, SampleBatch& batch) const {
     Random& random = batch.randoms[i];
     const double number = (static_cast<double>(random.next()) + random.uniform()) * 0x1p-32;
     receivers.push_back(receiver_at(surface.point, surface.normal, number));
+    if (roughness_ > 0.0f) {
+      const Vec3 way{batch.rays[i].direction_x, batch.rays[i].direction_y,
+                     batch.rays[i].direction_z};
+      surfaces.push_back({surface.normal, way * (-1.0f / length(way)), roughness_});
+    }
     sources.push_back(i);
   }
   std::vector<kiwami_ray> rays;
   std::vector<size_t> targets;
   std::vector<float> amounts;
-  choose_targets(receivers, sources, batch, rays, targets, amounts);
+  choose_targets(receivers, surfaces, sources, batch, rays, targets, amounts);
   std::vector<uint8_t> occluded(rays.size());
   tracing.any_hits(rays, occluded);
   for (size_t k = 0; k < rays.size(); ++k) {

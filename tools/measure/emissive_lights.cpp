@@ -30,6 +30,13 @@ const std::vector<LightMethodName>& light_methods() {
       {"lazy_roulette", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 32},
       {"lazy_scrambled", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 32, KIWAMI_LIGHT_LOBE_COSINE,
        KIWAMI_LIGHT_ORDER_SCRAMBLED},
+      {"tree_glossy", KIWAMI_LIGHT_METHOD_TREE, 1, KIWAMI_LIGHT_LOBE_GLOSSY},
+      {"tree_mixed", KIWAMI_LIGHT_METHOD_TREE, 2, KIWAMI_LIGHT_LOBE_GLOSSY, KIWAMI_LIGHT_ORDER_XOR,
+       true},
+      {"splitting_glossy", KIWAMI_LIGHT_METHOD_TREE_SPLITTING, 8, KIWAMI_LIGHT_LOBE_GLOSSY},
+      {"lightcuts_glossy", KIWAMI_LIGHT_METHOD_LIGHTCUTS, 8, KIWAMI_LIGHT_LOBE_GLOSSY},
+      {"roulette_glossy", KIWAMI_LIGHT_METHOD_ROULETTE, 32, KIWAMI_LIGHT_LOBE_GLOSSY},
+      {"lazy_glossy", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 32, KIWAMI_LIGHT_LOBE_GLOSSY},
   };
   return methods;
 }
@@ -55,6 +62,37 @@ float EmissiveTriangle::arriving(Vec3 from, Vec3 at, Vec3 at_normal) const {
   const float cosine = dot(way, at_normal);
   if (!(square > 0.0f) || !(cosine > 0.0f)) return 0.0f;
   return radiance * cosine * std::fabs(dot(way, normal)) / (square * square);
+}
+
+float EmissiveTriangle::sent(Vec3 from, Vec3 at) const {
+  const Vec3 way = from - at;
+  const float square = dot(way, way);
+  if (!(square > 0.0f)) return 0.0f;
+  return radiance * std::fabs(dot(way, normal)) / (square * std::sqrt(square));
+}
+
+float GlossySurface::reflected(Vec3 towards_light) const {
+  const float distance = length(towards_light);
+  if (!(distance > 0.0f)) return 0.0f;
+  const Vec3 in = towards_light * (1.0f / distance);
+  const float cos_in = dot(in, normal), cos_out = dot(view, normal);
+  if (!(cos_in > 0.0f) || !(cos_out > 0.0f)) return 0.0f;
+  const Vec3 sum = in + view;
+  const float cos_half = dot(sum, normal) / length(sum);
+  const float square = roughness * roughness;
+  const float off = cos_half * cos_half * (square - 1.0f) + 1.0f;
+  const float density = square / (3.14159265f * off * off);
+  const auto hidden = [&](float cosine) {
+    return std::sqrt(square + (1.0f - square) * cosine * cosine);
+  };
+  const float seen =
+      2.0f * cos_in * cos_out / (cos_out * hidden(cos_in) + cos_in * hidden(cos_out));
+  return density * seen / (4.0f * cos_out);
+}
+
+kiwami_light_lobe GlossySurface::lobe() const {
+  const Vec3 mirrored = normal * (2.0f * dot(view, normal)) - view;
+  return {{mirrored.x, mirrored.y, mirrored.z}, roughness};
 }
 
 std::vector<EmissiveTriangle> choose_emissive(const SceneFile& file, double share) {
@@ -111,6 +149,7 @@ LightSet::LightSet(const Device& device, const std::vector<EmissiveTriangle>& tr
 
 void LightSet::sample(const LightMethodName& method,
                       std::span<const kiwami_light_receiver> receivers,
+                      std::span<const kiwami_light_lobe> lobes,
                       std::span<kiwami_light_choice> choices) const {
   kiwami_light_query query;
   throw_on_error(kiwami_light_query_init(&query, sizeof query));
@@ -118,8 +157,37 @@ void LightSet::sample(const LightMethodName& method,
   query.max_choices = method.max_choices;
   query.lobe = method.lobe;
   query.order = method.order;
+  query.lobes = lobes.data();
+  if (method.is_mixed) return sample_mixed(query, receivers, choices);
   throw_on_error(
       kiwami_light_sample(tree_, receivers.data(), 0, choices.data(), 0, receivers.size(), &query));
+}
+
+void LightSet::sample_mixed(kiwami_light_query query,
+                            std::span<const kiwami_light_receiver> receivers,
+                            std::span<kiwami_light_choice> choices) const {
+  const size_t count = receivers.size();
+  query.max_choices = 1;
+  kiwami_light_query diffuse = query;
+  diffuse.lobe = KIWAMI_LIGHT_LOBE_COSINE;
+  const kiwami_light_query* const queries[2] = {&diffuse, &query};
+  // The second choice needs a random number of its own: the receivers' turned by half.
+  std::vector<kiwami_light_receiver> turned(receivers.begin(), receivers.end());
+  for (kiwami_light_receiver& receiver : turned) {
+    receiver.random += receiver.random < 0.5 ? 0.5 : -0.5;
+  }
+  const kiwami_light_receiver* const sources[2] = {receivers.data(), turned.data()};
+  std::vector<float> other(count);
+  for (size_t k = 0; k < 2; ++k) {
+    constexpr size_t kStride = 2 * sizeof(kiwami_light_choice);
+    kiwami_light_choice* const own = choices.data() + k;
+    throw_on_error(kiwami_light_sample(tree_, sources[k], 0, own, kStride, count, queries[k]));
+    // A choice begins with the name of its light.
+    throw_on_error(kiwami_light_pdf(tree_, receivers.data(), 0,
+                                    reinterpret_cast<const kiwami_light_name*>(own), kStride,
+                                    other.data(), 0, count, queries[1 - k]));
+    for (size_t i = 0; i < count; ++i) choices[2 * i + k].probability += other[i];
+  }
 }
 
 kiwami_light_receiver receiver_at(Vec3 point, Vec3 normal, double random) {

@@ -16,7 +16,13 @@ struct LightMethodName {
   uint32_t max_choices;  ///< of a receiver at once
   uint32_t lobe = KIWAMI_LIGHT_LOBE_COSINE;
   uint32_t order = KIWAMI_LIGHT_ORDER_XOR;
+  /// Of two choices, one made with the lobe COSINE and one with GLOSSY: weighed together by the
+  /// balance heuristic (E. Veach, L. J. Guibas, "Optimally Combining Sampling Techniques for Monte
+  /// Carlo Rendering", SIGGRAPH 1995).
+  bool is_mixed = false;
 
+  /// Whether it is for glossy receivers alone.
+  bool is_glossy() const { return lobe == KIWAMI_LIGHT_LOBE_GLOSSY; }
   bool is_roulette() const {
     return method == KIWAMI_LIGHT_METHOD_CULLING || method == KIWAMI_LIGHT_METHOD_ROULETTE ||
            method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE;
@@ -37,9 +43,27 @@ struct EmissiveTriangle {
   uint32_t mesh, number;  ///< where it is in the scene
 
   Vec3 middle() const { return corner + (u + v) * (1.0f / 3.0f); }
+  /// What one of its points sends to a point, by area: radiance times the cosine there over the
+  /// squared distance.
+  float sent(Vec3 from, Vec3 at) const;
   /// What arrives from one of its points at a point with a normal, by area: radiance times the
   /// cosines over the squared distance, nothing from below the tangent plane.
   float arriving(Vec3 from, Vec3 at, Vec3 at_normal) const;
+};
+
+/// A receiver that reflects by the GGX distribution (B. Walter, S. R. Marschner, H. Li, K. E.
+/// Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007), without Fresnel
+/// term.
+struct GlossySurface {
+  Vec3 normal;  ///< of unit length
+  Vec3 view;    ///< towards the viewer, of unit length, on the side of the normal
+  float roughness;
+
+  /// What is seen of light that comes along from a direction of any length: the distribution times
+  /// the cosine.
+  float reflected(Vec3 towards_light) const;
+  /// Around the mirror direction.
+  kiwami_light_lobe lobe() const;
 };
 
 /// A part of a scene's triangles that shine: each for itself with the probability `share`, with a
@@ -56,11 +80,16 @@ class LightSet {
   LightSet& operator=(const LightSet&) = delete;
 
   const kiwami_light_tree_info& info() const { return info_; }
-  /// As many choices for each receiver as the method has at most.
+  /// As many choices for each receiver as the method has at most. lobes: one a receiver, for glossy
+  /// methods. Of mixed ones, probabilities are what contributions are to be divided by.
   void sample(const LightMethodName& method, std::span<const kiwami_light_receiver> receivers,
+              std::span<const kiwami_light_lobe> lobes,
               std::span<kiwami_light_choice> choices) const;
 
  private:
+  void sample_mixed(kiwami_light_query query, std::span<const kiwami_light_receiver> receivers,
+                    std::span<kiwami_light_choice> choices) const;
+
   kiwami_light_tree* tree_ = nullptr;
   kiwami_light_tree_info info_{};
 };
