@@ -14,8 +14,8 @@ import sys
 LANGUAGES = {"cpp": "C++", "python": "Python", "rust": "Rust", "csharp": "C#", "go": "Go",
              "java": "Java", "node": "Node", "lua": "Lua"}
 FEATURES = ["closest hit", "any hit", "multi hit", "counts", "fields apart", "errors", "files",
-            "moving vertices", "spheres, discs, curves", "progress callback", "filter callback",
-            "user geometry callback", "many lights"]
+            "changes, refit", "spheres, discs, curves", "moving meshes", "instances",
+            "progress callback", "filter callback", "user geometry callback", "many lights"]
 BEGIN, END = "<!-- features: made by bindings/feature_table.py -->", "<!-- end of features -->"
 
 

@@ -32,12 +32,13 @@ func note(features ...string) {
 
 // words reads the conformance vectors: answers that every binding must give, to the bit.
 type words struct {
-	t    *testing.T
-	text []string
+	t      *testing.T
+	text   []string
+	scenes map[string]*Scene
 }
 
-func readVectors(t *testing.T) string {
-	text, err := os.ReadFile("../conformance/vectors.txt")
+func readVectors(t *testing.T, name string) string {
+	text, err := os.ReadFile("../conformance/" + name + ".txt")
 	if err != nil {
 		t.Fatal(err)
 	}
@@ -64,8 +65,17 @@ func (w *words) number() uint64 {
 func (w *words) int() uint32         { return uint32(w.number()) }
 func (w *words) float() float32      { return math.Float32frombits(w.int()) }
 func (w *words) floats() [3]float32  { return [3]float32{w.float(), w.float(), w.float()} }
+func (w *words) four() [4]float32    { return [4]float32{w.float(), w.float(), w.float(), w.float()} }
 func (w *words) numbers() [3]uint32  { return [3]uint32{w.int(), w.int(), w.int()} }
 func (w *words) expect(words string) { w.equal(w.word(), words) }
+
+func readMany[T any](count uint32, read func() T) []T {
+	values := make([]T, count)
+	for i := range values {
+		values[i] = read()
+	}
+	return values
+}
 
 func (w *words) equal(actual, expected any) {
 	w.t.Helper()
@@ -133,72 +143,135 @@ func (w *words) checkFile(device *Device, scene *Scene, rays []Ray) {
 	note("files")
 }
 
-func (w *words) checkScene(device *Device) int {
+// addGeometry adds a geometry of this kind, or says that it is none.
+func (w *words) addGeometry(kind string, scene *Scene) bool {
+	var err error
+	switch kind {
+	case "mesh":
+		mask, vertices, triangles := w.int(), w.int(), w.int()
+		_, err = scene.AddMesh(readMany(vertices, w.floats), readMany(triangles, w.numbers), mask)
+	case "moving_mesh":
+		mask, steps, begin, end := w.int(), w.int(), w.float(), w.float()
+		vertices, triangles := w.int(), w.int()
+		all := readMany(steps, func() [][3]float32 { return readMany(vertices, w.floats) })
+		_, err = scene.AddMovingMesh(all, readMany(triangles, w.numbers), begin, end, mask)
+	case "spheres":
+		mask := w.int()
+		_, err = scene.AddSpheres(readMany(w.int(), w.four), mask)
+	case "discs":
+		mask, count := w.int(), w.int()
+		_, err = scene.AddDiscs(readMany(count, w.four), readMany(count, w.floats), mask)
+	case "curves":
+		mask, points, segments := w.int(), w.int(), w.int()
+		_, err = scene.AddCurves(readMany(points, w.four), readMany(segments, w.int), mask)
+	case "instances":
+		mask, scenes, count := w.int(), w.int(), w.int()
+		shown := readMany(scenes, func() *Scene { return w.scenes[w.word()] })
+		instances := readMany(count, func() Instance {
+			return Instance{w.int(), w.int(), [3][4]float32{w.four(), w.four(), w.four()}}
+		})
+		_, err = scene.AddInstances(shown, instances, mask)
+	default:
+		return false
+	}
+	w.equal(err, nil)
+	return true
+}
+
+// change changes the scene by one statement, or says that it does not change it.
+func (w *words) change(statement string, scene *Scene) bool {
+	var err error
+	switch statement {
+	case "commit":
+		err = scene.Commit()
+	case "refit":
+		err = scene.Refit()
+	case "vertices":
+		geometryID, count := w.int(), w.int()
+		err = scene.UpdateVertices(geometryID, readMany(count, w.floats))
+	case "enable":
+		geometryID := w.int()
+		err = scene.Enable(geometryID, w.int() != 0)
+	case "remove":
+		err = scene.Remove(w.int())
+	default:
+		return false
+	}
+	w.equal(err, nil)
+	return true
+}
+
+// compare compares one kind of answer.
+func (w *words) compare(statement string, device *Device, scene *Scene, rays []Ray) {
+	switch statement {
+	case "closest_hit":
+		hits, err := scene.ClosestHit(rays)
+		w.equal(err, nil)
+		for _, hit := range hits {
+			w.equal(bitsOf(hit), w.hit())
+		}
+	case "any_hit":
+		occluded, err := scene.AnyHit(rays)
+		w.equal(err, nil)
+		for _, each := range occluded {
+			w.equal(each, w.int() == 1)
+		}
+	case "multi_hit":
+		w.checkMultiHit(scene, rays)
+	case "file":
+		w.checkFile(device, scene, rays)
+	default:
+		w.t.Fatalf("the vectors have %q", statement)
+	}
+}
+
+// checkScene returns how many rays were compared.
+func (w *words) checkScene(device *Device) (compared int) {
 	scene, err := NewScene(device)
 	w.equal(err, nil)
-	defer scene.Close()
-	w.word()
-	word := w.word()
-	for ; word == "mesh"; word = w.word() {
-		mask := w.int()
-		vertices, triangles := make([][3]float32, w.int()), make([][3]uint32, w.int())
-		for i := range vertices {
-			vertices[i] = w.floats()
+	w.scenes[w.word()] = scene
+	var rays []Ray
+	for statement := w.word(); statement != "end"; statement = w.word() {
+		if statement == "rays" {
+			rays = readMany(w.int(), w.ray)
+			compared += len(rays)
+		} else if !w.addGeometry(statement, scene) && !w.change(statement, scene) {
+			w.compare(statement, device, scene, rays)
 		}
-		for i := range triangles {
-			triangles[i] = w.numbers()
-		}
-		_, err := scene.AddMesh(vertices, triangles, mask)
-		w.equal(err, nil)
 	}
-	w.equal(word, "rays")
-	rays := make([]Ray, w.int())
-	for i := range rays {
-		rays[i] = w.ray()
-	}
-	w.equal(scene.Commit(), nil)
-	w.expect("closest_hit")
-	hits, err := scene.ClosestHit(rays)
-	w.equal(err, nil)
-	for _, hit := range hits {
-		w.equal(bitsOf(hit), w.hit())
-	}
-	w.expect("any_hit")
-	occluded, err := scene.AnyHit(rays)
-	w.equal(err, nil)
-	for _, each := range occluded {
-		w.equal(each, w.int() == 1)
-	}
-	for word = w.word(); word == "multi_hit"; word = w.word() {
-		w.checkMultiHit(scene, rays)
-	}
-	if word == "file" {
-		w.checkFile(device, scene, rays)
-		word = w.word()
-	}
-	w.equal(word, "end")
-	note("closest hit", "any hit", "multi hit", "counts")
-	return len(rays)
+	return compared
 }
 
 func TestAnswersAreTheSameToTheBit(t *testing.T) {
-	for _, isa := range []ISA{ISAAuto, ISAScalar} {
-		device, err := NewDevice(&DeviceOptions{ISA: isa, Validate: true})
-		if err != nil {
-			t.Fatal(err)
+	for name, features := range map[string][]string{
+		"vectors":       {"closest hit", "any hit", "multi hit", "counts"},
+		"shapes":        {"spheres, discs, curves"},
+		"moving_meshes": {"moving meshes"},
+		"instances":     {"instances"},
+		"changes":       {"changes, refit"},
+	} {
+		for _, isa := range []ISA{ISAAuto, ISAScalar} {
+			device, err := NewDevice(&DeviceOptions{ISA: isa, Validate: true})
+			if err != nil {
+				t.Fatal(err)
+			}
+			w := &words{t, strings.Fields(readVectors(t, name)), map[string]*Scene{}}
+			w.expect("kiwami-conformance")
+			w.expect("1")
+			compared := 0
+			for len(w.text) > 0 && w.word() == "scene" {
+				compared += w.checkScene(device)
+			}
+			if compared < 100 {
+				t.Fatalf("%s: only %d rays were compared", name, compared)
+			}
+			for _, scene := range w.scenes {
+				scene.Close()
+			}
+			device.Close()
+			device.Close()
 		}
-		w := &words{t, strings.Fields(readVectors(t))}
-		w.expect("kiwami-conformance")
-		w.expect("1")
-		compared := 0
-		for w.word() == "scene" {
-			compared += w.checkScene(device)
-		}
-		if compared < 100 {
-			t.Fatalf("only %d rays were compared", compared)
-		}
-		device.Close()
-		device.Close()
+		note(features...)
 	}
 }
 
@@ -214,7 +287,7 @@ func TestErrorsAreTheSame(t *testing.T) {
 		"parameter_out_of_bounds": scene.SetParameter(4, 1000),
 		"not_committed":           notCommitted,
 	}
-	for _, line := range strings.Split(readVectors(t), "\n") {
+	for _, line := range strings.Split(readVectors(t, "vectors"), "\n") {
 		parts := strings.SplitN(line, " ", 4)
 		if parts[0] != "error" {
 			continue

@@ -35,13 +35,18 @@ const (
 	CullFrontFaces = uint32(C.KIWAMI_RAY_CULL_FRONT_FACES)
 )
 
-// Error is an error of the library: its number and its sentence.
+// Error is an error of the library: its number and its sentence, and, where a callback failed, what
+// it returned or panicked with.
 type Error struct {
 	Result   int32
 	Sentence string
+	Cause    error
 }
 
 func (e *Error) Error() string { return e.Sentence }
+
+// Unwrap gives the cause, for errors.Is and errors.As.
+func (e *Error) Unwrap() error { return e.Cause }
 
 // check turns a result into an error. The sentence belongs to the operating system's thread, so
 // callers lock theirs to it.
@@ -55,7 +60,7 @@ func check(result C.kiwami_result, device *C.kiwami_device) error {
 	if sentence == "" {
 		sentence = C.GoString(C.kiwami_result_name(result))
 	}
-	return &Error{int32(result), sentence}
+	return &Error{int32(result), sentence, nil}
 }
 
 // onOneThread runs a call and the reading of its error on one thread.

@@ -21,8 +21,9 @@ func NewRay(origin, direction [3]float32) Ray {
 
 // Scene is meshes under one acceleration structure. Changes take effect with Commit.
 type Scene struct {
-	object *C.kiwami_scene
-	device *C.kiwami_device
+	object   *C.kiwami_scene
+	device   *C.kiwami_device
+	attached map[uint32]attached
 }
 
 // NewScene makes an empty scene; without a device (nil) it makes one of its own.
@@ -35,7 +36,7 @@ func NewScene(device *Device) (*Scene, error) {
 		defer own.Close() // the scene holds it
 		device = own
 	}
-	scene := &Scene{}
+	scene := &Scene{attached: map[uint32]attached{}}
 	err := onOneThread(func() error {
 		return check(C.kiwami_scene_create(device.object, &scene.object), device.object)
 	})
@@ -50,6 +51,10 @@ func NewScene(device *Device) (*Scene, error) {
 
 // Close lets go of the scene. Closing twice is allowed.
 func (s *Scene) Close() {
+	for _, each := range s.attached {
+		C.kiwami_geometry_release(each.geometry)
+	}
+	s.attached = nil
 	C.kiwami_scene_release(s.object)
 	C.kiwami_device_release(s.device)
 	s.object, s.device = nil, nil
@@ -59,7 +64,7 @@ func (s *Scene) Close() {
 // call runs a call of the C interface on this scene.
 func (s *Scene) call(body func() C.kiwami_result) error {
 	if s.object == nil {
-		return &Error{C.KIWAMI_ERROR_INVALID_STATE, "the scene is closed"}
+		return &Error{C.KIWAMI_ERROR_INVALID_STATE, "the scene is closed", nil}
 	}
 	defer runtime.KeepAlive(s)
 	return onOneThread(func() error { return check(body(), s.device) })
@@ -72,40 +77,6 @@ func address[T any](slice []T) unsafe.Pointer {
 	return unsafe.Pointer(&slice[0])
 }
 
-// AddMesh adds a mesh, copied, and returns the number that hits report as GeometryID. Only a ray
-// with ray.Mask & mask != 0 meets it.
-func (s *Scene) AddMesh(vertices [][3]float32, triangles [][3]uint32, mask uint32) (uint32, error) {
-	var number C.uint32_t
-	err := s.call(func() C.kiwami_result {
-		var desc C.kiwami_triangle_mesh_desc
-		var geometry *C.kiwami_geometry
-		C.kiwami_triangle_mesh_desc_init(&desc, C.sizeof_kiwami_triangle_mesh_desc)
-		// Go's memory may not be held by C's, so the buffers are pinned while the library copies.
-		var pinner pinned
-		defer pinner.free()
-		desc.vertices = pinner.copy(address(vertices), len(vertices)*12)
-		desc.vertex_count = C.uint64_t(len(vertices))
-		desc.indices = pinner.copy(address(triangles), len(triangles)*12)
-		desc.triangle_count = C.uint64_t(len(triangles))
-		desc.mask = C.uint32_t(mask)
-		result := C.kiwami_triangle_mesh_create(s.device, &desc, &geometry)
-		if result != C.KIWAMI_OK {
-			return result
-		}
-		result = C.kiwami_scene_attach(s.object, geometry, &number)
-		C.kiwami_geometry_release(geometry)
-		return result
-	})
-	return uint32(number), err
-}
-
-// Remove removes a mesh; its number becomes free.
-func (s *Scene) Remove(geometryID uint32) error {
-	return s.call(func() C.kiwami_result {
-		return C.kiwami_scene_detach(s.object, C.uint32_t(geometryID))
-	})
-}
-
 // SetParameter sets one of KIWAMI_PARAMETER_* of scene.h.
 func (s *Scene) SetParameter(parameter uint32, value float64) error {
 	return s.call(func() C.kiwami_result {
@@ -115,32 +86,38 @@ func (s *Scene) SetParameter(parameter uint32, value float64) error {
 
 // Commit builds the acceleration structure of what the scene holds now.
 func (s *Scene) Commit() error {
-	return s.call(func() C.kiwami_result { return C.kiwami_scene_commit(s.object) })
+	return s.callWithUserGeometry(func() C.kiwami_result { return C.kiwami_scene_commit(s.object) })
+}
+
+// Refit is Commit, but keeps the tree where only vertices moved: quicker to make, and, the further
+// they moved, slower to trace.
+func (s *Scene) Refit() error {
+	return s.callWithUserGeometry(func() C.kiwami_result { return C.kiwami_scene_refit(s.object) })
 }
 
 // ClosestHit finds the closest hit of each ray.
-func (s *Scene) ClosestHit(rays []Ray) ([]Hit, error) {
+func (s *Scene) ClosestHit(rays []Ray, options ...Option) ([]Hit, error) {
 	hits := make([]Hit, len(rays))
-	return hits, s.ClosestHitInto(rays, hits)
+	return hits, s.ClosestHitInto(rays, hits, options...)
 }
 
 // ClosestHitInto is the same, into hits, of which there must be as many as rays.
-func (s *Scene) ClosestHitInto(rays []Ray, hits []Hit) error {
+func (s *Scene) ClosestHitInto(rays []Ray, hits []Hit, options ...Option) error {
 	if len(hits) != len(rays) {
-		return &Error{C.KIWAMI_ERROR_INVALID_ARGUMENT, "hits and rays differ in length"}
+		return invalid("there is room for %d hits, expected %d", len(hits), len(rays))
 	}
-	return s.call(func() C.kiwami_result {
+	return s.trace(options, func(query *C.kiwami_query) C.kiwami_result {
 		return C.kiwami_closest_hit(s.object, (*C.kiwami_ray)(address(rays)), 0,
-			(*C.kiwami_hit)(address(hits)), 0, C.size_t(len(rays)), nil)
+			(*C.kiwami_hit)(address(hits)), 0, C.size_t(len(rays)), query)
 	})
 }
 
 // AnyHit finds out of each ray whether it has a hit.
-func (s *Scene) AnyHit(rays []Ray) ([]bool, error) {
+func (s *Scene) AnyHit(rays []Ray, options ...Option) ([]bool, error) {
 	occluded := make([]bool, len(rays))
-	err := s.call(func() C.kiwami_result {
+	err := s.trace(options, func(query *C.kiwami_query) C.kiwami_result {
 		return C.kiwami_any_hit(s.object, (*C.kiwami_ray)(address(rays)), 0,
-			(*C.uint8_t)(address(occluded)), 0, C.size_t(len(rays)), nil)
+			(*C.uint8_t)(address(occluded)), 0, C.size_t(len(rays)), query)
 	})
 	return occluded, err
 }
@@ -155,14 +132,14 @@ type MultiHits struct {
 func (m MultiHits) Of(ray int) []Hit { return m.Hits[m.Offsets[ray]:m.Offsets[ray+1]] }
 
 // MultiHit finds the nearest maxHits hits of each ray; 0 stands for all.
-func (s *Scene) MultiHit(rays []Ray, maxHits uint32) (MultiHits, error) {
+func (s *Scene) MultiHit(rays []Ray, maxHits uint32, options ...Option) (MultiHits, error) {
 	found := MultiHits{make([]uint64, len(rays)+1), make([]Hit, len(rays))}
 	for {
 		isComplete := true
-		err := s.call(func() C.kiwami_result {
+		err := s.trace(options, func(query *C.kiwami_query) C.kiwami_result {
 			result := C.kiwami_multi_hit(s.object, (*C.kiwami_ray)(address(rays)), 0,
 				C.size_t(len(rays)), C.uint32_t(maxHits), (*C.kiwami_hit)(address(found.Hits)),
-				C.uint64_t(len(found.Hits)), (*C.uint64_t)(address(found.Offsets)), nil)
+				C.uint64_t(len(found.Hits)), (*C.uint64_t)(address(found.Offsets)), query)
 			if result == C.KIWAMI_ERROR_CAPACITY {
 				isComplete = false
 				return C.KIWAMI_OK
@@ -182,11 +159,11 @@ func (s *Scene) MultiHit(rays []Ray, maxHits uint32) (MultiHits, error) {
 }
 
 // CountHits counts the hits of each ray.
-func (s *Scene) CountHits(rays []Ray) ([]uint32, error) {
+func (s *Scene) CountHits(rays []Ray, options ...Option) ([]uint32, error) {
 	counts := make([]uint32, len(rays))
-	err := s.call(func() C.kiwami_result {
+	err := s.trace(options, func(query *C.kiwami_query) C.kiwami_result {
 		return C.kiwami_count_hits(s.object, (*C.kiwami_ray)(address(rays)), 0,
-			(*C.uint32_t)(address(counts)), 0, C.size_t(len(rays)), nil)
+			(*C.uint32_t)(address(counts)), 0, C.size_t(len(rays)), query)
 	})
 	return counts, err
 }

@@ -102,8 +102,8 @@ function kiwami.scene(device)
   device = device or kiwami.device()
   local made = ffi.new("kiwami_scene*[1]")
   check(native.kiwami_scene_create(device.object, made), device.object)
-  return setmetatable(
-    { object = ffi.gc(made[0], native.kiwami_scene_release), device = device }, Scene)
+  local object = ffi.gc(made[0], native.kiwami_scene_release)
+  return setmetatable({ object = object, device = device, attached = {} }, Scene)
 end
 
 -- Loads a scene that save wrote. options: device; map (use the file where it lies, which may not
@@ -117,8 +117,8 @@ function kiwami.load_scene(path, options)
     + (options.trusted and native.KIWAMI_LOAD_TRUSTED or 0)
   local made = ffi.new("kiwami_scene*[1]")
   check(native.kiwami_scene_load(device.object, desc, made), device.object)
-  return setmetatable(
-    { object = ffi.gc(made[0], native.kiwami_scene_release), device = device }, Scene)
+  local object = ffi.gc(made[0], native.kiwami_scene_release)
+  return setmetatable({ object = object, device = device, attached = {} }, Scene)
 end
 
 local function check_scene(scene, result) check(result, scene.device.object) end
@@ -131,44 +131,167 @@ end
 -- Lets go of the scene at once. Closing twice is allowed.
 function Scene:close()
   if not self.object then return end
+  for _, each in pairs(self.attached) do
+    native.kiwami_geometry_release(ffi.gc(each.geometry, nil))
+  end
   native.kiwami_scene_release(ffi.gc(self.object, nil))
-  self.object = nil
+  self.object, self.attached = nil, {}
 end
 
--- A table of numbers, or an FFI array with its length in numbers, as an FFI array.
-local function numbers(values, length, kind, name)
+-- A table of numbers, or an FFI array with its length in numbers, as an FFI array; and how many rows
+-- of so many numbers there are.
+local function rows(values, length, columns, kind, name)
   local count = length or #values
-  if count % 3 ~= 0 then
-    error(name .. " has " .. count .. " numbers, expected a multiple of 3", 3)
+  if count % columns ~= 0 then
+    error(name .. " has " .. count .. " numbers, expected a multiple of " .. columns, 4)
   end
-  if type(values) == "cdata" then return values, count / 3 end
-  return ffi.new(kind .. "[?]", math.max(count, 1), values), count / 3
+  if type(values) == "cdata" then return values, count / columns end
+  return ffi.new(kind .. "[?]", math.max(count, 1), values), count / columns
+end
+
+local function require_rows(found, expected, name)
+  if found ~= expected then
+    error(name .. " has " .. found .. " rows, expected " .. expected, 3)
+  end
+end
+
+-- Makes a geometry of a descriptor, attaches it, and returns the number that hits report. buffers are
+-- what the descriptor points to: it does not keep them.
+local function add(scene, kind, desc, buffers, vertex_count)
+  scene.buffers = buffers
+  local made = ffi.new("kiwami_geometry*[1]")
+  local result = native["kiwami_" .. kind .. "_create"](scene.device.object, desc, made)
+  scene.buffers = nil
+  check_scene(scene, result)
+  local geometry = ffi.gc(made[0], native.kiwami_geometry_release)
+  local number = ffi.new("uint32_t[1]")
+  check_scene(scene, native.kiwami_scene_attach(handle(scene), geometry, number))
+  scene.attached[number[0]] = { geometry = geometry, vertex_count = vertex_count }
+  return number[0]
+end
+
+local function describe(kind)
+  return descriptor("kiwami_" .. kind .. "_desc", native["kiwami_" .. kind .. "_desc_init"])
 end
 
 -- Adds a mesh, copied: tables of three numbers a vertex and three a triangle (numbers of vertices
 -- begin with 0). options: mask; vertex_numbers and triangle_numbers, the lengths of FFI arrays.
--- Returns the number that hits report.
+-- Returns the number that hits report, as all of these do.
 function Scene:add_mesh(vertices, triangles, options)
   options = options or {}
-  local positions, vertex_count = numbers(vertices, options.vertex_numbers, "float", "vertices")
+  local positions, vertex_count =
+    rows(vertices, options.vertex_numbers, 3, "float", "vertices")
   local indices, triangle_count =
-    numbers(triangles, options.triangle_numbers, "uint32_t", "triangles")
-  local desc = descriptor("kiwami_triangle_mesh_desc", native.kiwami_triangle_mesh_desc_init)
+    rows(triangles, options.triangle_numbers, 3, "uint32_t", "triangles")
+  local desc = describe("triangle_mesh")
   desc.vertices, desc.vertex_count = positions, vertex_count
   desc.indices, desc.triangle_count = indices, triangle_count
   desc.mask = options.mask or kiwami.ALL_MASKS
-  local made = ffi.new("kiwami_geometry*[1]")
-  check_scene(self, native.kiwami_triangle_mesh_create(self.device.object, desc, made))
-  local number = ffi.new("uint32_t[1]")
-  local result = native.kiwami_scene_attach(handle(self), made[0], number)
-  native.kiwami_geometry_release(made[0])
-  check_scene(self, result)
-  return number[0]
+  return add(self, "triangle_mesh", desc, { positions, indices }, vertex_count)
 end
 
--- Removes a mesh; its number becomes free.
+-- Adds a mesh whose vertices move from step to step: those of all steps, one step after the other.
+-- options as of add_mesh, and time_begin (0) and time_end (1).
+function Scene:add_moving_mesh(vertices, step_count, triangles, options)
+  options = options or {}
+  local columns = 3 * math.max(step_count, 1)
+  local positions, vertex_count =
+    rows(vertices, options.vertex_numbers, columns, "float", "vertices of all steps")
+  local indices, triangle_count =
+    rows(triangles, options.triangle_numbers, 3, "uint32_t", "triangles")
+  local desc = describe("moving_mesh")
+  desc.vertices, desc.vertex_count, desc.step_count = positions, vertex_count, step_count
+  desc.indices, desc.triangle_count = indices, triangle_count
+  desc.time_begin, desc.time_end = options.time_begin or 0, options.time_end or 1
+  desc.mask = options.mask or kiwami.ALL_MASKS
+  return add(self, "moving_mesh", desc, { positions, indices })
+end
+
+-- Adds spheres: x, y, z and radius. options: mask; point_numbers, the length of an FFI array.
+function Scene:add_spheres(points, options)
+  options = options or {}
+  local desc = describe("spheres")
+  local copied, count = rows(points, options.point_numbers, 4, "float", "points")
+  desc.points, desc.sphere_count = copied, count
+  desc.mask = options.mask or kiwami.ALL_MASKS
+  return add(self, "spheres", desc, { copied })
+end
+
+-- Adds flat discs, as many points as normals. options as of add_spheres, and normal_numbers.
+function Scene:add_discs(points, normals, options)
+  options = options or {}
+  local desc = describe("discs")
+  local copied, count = rows(points, options.point_numbers, 4, "float", "points")
+  local directions, normal_count = rows(normals, options.normal_numbers, 3, "float", "normals")
+  require_rows(normal_count, count, "normals")
+  desc.points, desc.normals, desc.disc_count = copied, directions, count
+  desc.mask = options.mask or kiwami.ALL_MASKS
+  return add(self, "discs", desc, { copied, directions })
+end
+
+-- Adds round curve segments: each joins the points of this number (from 0 on) and the next.
+-- options as of add_spheres, and segment_numbers.
+function Scene:add_curves(points, segments, options)
+  options = options or {}
+  local desc = describe("curves")
+  local copied, count = rows(points, options.point_numbers, 4, "float", "points")
+  local indices, segment_count =
+    rows(segments, options.segment_numbers, 1, "uint32_t", "segments")
+  desc.points, desc.point_count = copied, count
+  desc.indices, desc.segment_count = indices, segment_count
+  desc.mask = options.mask or kiwami.ALL_MASKS
+  return add(self, "curves", desc, { copied, indices })
+end
+
+-- Adds instances of a list of scenes. transforms: three rows of four numbers each, from the scene's
+-- space to this one's. options: the tables scene_indices, which of the scenes (from 0 on) each shows,
+-- and masks, which rays enter each; mask; transform_numbers, the length of an FFI array. A commit shows what the
+-- scenes have committed by then.
+function Scene:add_instances(scenes, transforms, options)
+  options = options or {}
+  local desc = describe("instances")
+  local shown = ffi.new("kiwami_scene*[?]", math.max(#scenes, 1))
+  for i, scene in ipairs(scenes) do shown[i - 1] = handle(scene) end
+  local matrices, count =
+    rows(transforms, options.transform_numbers, 12, "float", "transforms")
+  local indices, masks = nil, nil
+  if options.scene_indices then
+    require_rows(#options.scene_indices, count, "scene_indices")
+    indices = rows(options.scene_indices, nil, 1, "uint32_t", "scene_indices")
+  end
+  if options.masks then
+    require_rows(#options.masks, count, "masks")
+    masks = rows(options.masks, nil, 1, "uint32_t", "masks")
+  end
+  desc.scenes, desc.scene_count = shown, #scenes
+  desc.transforms, desc.count = matrices, count
+  desc.scene_indices, desc.masks = indices, masks
+  desc.mask = options.mask or kiwami.ALL_MASKS
+  return add(self, "instances", desc, { shown, matrices, indices, masks })
+end
+
+-- Gives a mesh other vertices, as many as it has; refit or commit shows them.
+function Scene:update_vertices(geometry_id, vertices, vertex_numbers)
+  local mesh = self.attached[geometry_id]
+  if not mesh or not mesh.vertex_count then
+    error("geometry " .. tostring(geometry_id) .. " is no mesh", 2)
+  end
+  local positions, count = rows(vertices, vertex_numbers, 3, "float", "vertices")
+  require_rows(count, mesh.vertex_count, "vertices")
+  check_scene(
+    self, native.kiwami_triangle_mesh_update_vertices(mesh.geometry, positions, 0, 0))
+end
+
+-- Leaves a geometry out (false), or takes it in again, under its number.
+function Scene:enable(geometry_id, is_enabled)
+  local number = is_enabled == false and 0 or 1
+  check_scene(self, native.kiwami_scene_enable(handle(self), geometry_id, number))
+end
+
+-- Removes a geometry; its number becomes free.
 function Scene:remove(geometry_id)
   check_scene(self, native.kiwami_scene_detach(handle(self), geometry_id))
+  self.attached[geometry_id] = nil
 end
 
 -- Sets one of kiwami.native.KIWAMI_PARAMETER_*.
@@ -178,6 +301,10 @@ end
 
 -- Builds the acceleration structure of what the scene holds now.
 function Scene:commit() check_scene(self, native.kiwami_scene_commit(handle(self))) end
+
+-- As commit, but keeps the tree where only vertices moved: quicker to make, and, the further they
+-- moved, slower to trace.
+function Scene:refit() check_scene(self, native.kiwami_scene_refit(handle(self))) end
 
 -- Saves the committed scene; a file of that name stays whole until all is written.
 function Scene:save(path)

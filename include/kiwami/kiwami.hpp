@@ -19,170 +19,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "kiwami.h"
+#include "callbacks.hpp"
 
 namespace kiwami {
 
-using Ray = kiwami_ray;
-using Hit = kiwami_hit;
 using SceneInfo = kiwami_scene_info;
-using DeviceInfo = kiwami_device_info;
-
-/// Three numbers that lie together.
-using Vertex = std::array<float, 3>;
-using Triangle = std::array<std::uint32_t, 3>;
-
-/// An error of the library: its number, and its sentence as what().
-class Error : public std::runtime_error {
- public:
-  Error(kiwami_result result, const std::string& sentence)
-      : std::runtime_error(sentence), result_(result) {}
-  kiwami_result result() const noexcept { return result_; }
-
- private:
-  kiwami_result result_;
-};
-
-namespace detail {
-
-inline void check(kiwami_result result, const kiwami_device* device = nullptr) {
-  if (result == KIWAMI_OK) return;
-  char sentence[1024];
-  kiwami_last_error(device, sentence, sizeof(sentence));
-  throw Error(result, sentence[0] != '\0' ? sentence : kiwami_result_name(result));
-}
-
-/// Owns one reference to an object of the C interface.
-template <typename T, void (*kRetain)(T*), void (*kRelease)(T*)>
-class Handle {
- public:
-  Handle() = default;
-  /// Takes over the caller's reference.
-  explicit Handle(T* object) noexcept : object_(object) {}
-  Handle(const Handle& other) noexcept : object_(other.object_) { kRetain(object_); }
-  Handle(Handle&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
-  Handle& operator=(Handle other) noexcept {
-    std::swap(object_, other.object_);
-    return *this;
-  }
-  ~Handle() { kRelease(object_); }
-
-  /// The object for calls of the C interface; it stays this handle's.
-  T* get() const noexcept { return object_; }
-  explicit operator bool() const noexcept { return object_ != nullptr; }
-
- private:
-  T* object_ = nullptr;
-};
-
-}  // namespace detail
-
-/// How a device is to be made; the defaults are the library's.
-struct DeviceOptions {
-  std::uint32_t isa = KIWAMI_ISA_AUTO;
-  std::uint32_t thread_count = 0;
-  bool validate = false;  ///< check the arguments of the trace calls too
-};
-
-/// Kernels of one ISA and the threads that run them. Copies name the same device.
-class Device : public detail::Handle<kiwami_device, kiwami_device_retain, kiwami_device_release> {
- public:
-  Device() : Device(DeviceOptions{}) {}
-  explicit Device(const DeviceOptions& options) : Handle(create(options)) {}
-  explicit Device(const kiwami_device_desc& desc) : Handle(create(desc)) {}
-
-  DeviceInfo info() const {
-    DeviceInfo info{};
-    info.struct_size = sizeof(info);
-    detail::check(kiwami_device_get_info(get(), &info), get());
-    return info;
-  }
-
- private:
-  static kiwami_device* create(const kiwami_device_desc& desc) {
-    kiwami_device* device = nullptr;
-    detail::check(kiwami_device_create(&desc, &device));
-    return device;
-  }
-  static kiwami_device* create(const DeviceOptions& options) {
-    kiwami_device_desc desc;
-    detail::check(kiwami_device_desc_init(&desc, sizeof(desc)));
-    desc.isa = options.isa;
-    desc.thread_count = options.thread_count;
-    desc.flags = options.validate ? std::uint32_t{KIWAMI_DEVICE_VALIDATE} : 0u;
-    return create(desc);
-  }
-};
-
-/// Geometries of any kind.
-class Geometry
-    : public detail::Handle<kiwami_geometry, kiwami_geometry_retain, kiwami_geometry_release> {
- public:
-  using Handle::Handle;
-};
-
-/// A triangle mesh.
-class Mesh : public Geometry {
- public:
-  /// Copies vertices and triangles; only a ray with (ray.mask & mask) != 0 meets the mesh.
-  Mesh(const Device& device, std::span<const Vertex> vertices, std::span<const Triangle> triangles,
-       std::uint32_t mask = ~std::uint32_t{0})
-      : Geometry(create(device, vertices, triangles, mask)) {}
-  /// With strides, offsets and shared buffers as the C interface has them.
-  Mesh(const Device& device, const kiwami_triangle_mesh_desc& desc)
-      : Geometry(create(device, desc)) {}
-
- private:
-  static kiwami_geometry* create(const Device& device, const kiwami_triangle_mesh_desc& desc) {
-    kiwami_geometry* geometry = nullptr;
-    detail::check(kiwami_triangle_mesh_create(device.get(), &desc, &geometry), device.get());
-    return geometry;
-  }
-  static kiwami_geometry* create(const Device& device, std::span<const Vertex> vertices,
-                                 std::span<const Triangle> triangles, std::uint32_t mask) {
-    kiwami_triangle_mesh_desc desc;
-    detail::check(kiwami_triangle_mesh_desc_init(&desc, sizeof(desc)));
-    desc.vertices = vertices.data();
-    desc.vertex_count = vertices.size();
-    // An empty span may be a null pointer, which stands for triangles without indices.
-    static constexpr Triangle kNone{};
-    desc.indices = triangles.empty() ? &kNone : triangles.data();
-    desc.triangle_count = triangles.size();
-    desc.mask = mask;
-    return create(device, desc);
-  }
-};
-
-namespace detail {
-
-/// A callable as the progress function of a commit. No exception may cross C: it is kept.
-template <typename Progress>
-struct ProgressReport {
-  Progress& progress;
-  std::exception_ptr thrown;
-
-  static kiwami_progress function() {
-    return [](void* user, double fraction) -> std::int32_t {
-      auto& report = *static_cast<ProgressReport*>(user);
-      if (report.thrown) return 1;
-      try {
-        return report.progress(fraction) ? 1 : 0;
-      } catch (...) {
-        report.thrown = std::current_exception();
-        return 1;
-      }
-    };
-  }
-};
-
-}  // namespace detail
 
 /// The hits of many rays: those of ray i are hits[offsets[i]] to hits[offsets[i + 1] - 1].
 struct MultiHits {
@@ -213,18 +60,27 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
   void set_parameter(std::uint32_t parameter, double value) {
     check(kiwami_scene_set_parameter(get(), parameter, value));
   }
-  void commit() { check(kiwami_scene_commit(get())); }
+  /// Leaves a geometry out, or takes it in again, under its number.
+  void enable(std::uint32_t geometry_id, bool is_enabled = true) {
+    check(kiwami_scene_enable(get(), geometry_id, is_enabled ? 1 : 0));
+  }
+  /// Puts another geometry in the place of one, under its number.
+  void replace(std::uint32_t geometry_id, const Geometry& geometry) {
+    check(kiwami_scene_replace(get(), geometry_id, geometry.get()));
+  }
+  void commit() { build(kiwami_scene_commit); }
   /// The same, and tells progress(double) how far it is: a fraction from 0 to 1, which never falls,
   /// from any thread, never from two at a time. Where it returns true, the commit ends with
   /// Error(KIWAMI_ERROR_CANCELLED); what it throws ends the commit and comes out of this call.
   template <std::predicate<double> Progress>
   void commit(Progress&& progress) {
-    detail::ProgressReport<std::remove_reference_t<Progress>> report{progress, {}};
-    check(kiwami_scene_set_progress(get(), report.function(), &report));
-    const kiwami_result result = kiwami_scene_commit(get());
-    check(kiwami_scene_set_progress(get(), nullptr, nullptr));
-    if (report.thrown) std::rethrow_exception(report.thrown);
-    check(result);
+    build(kiwami_scene_commit, progress);
+  }
+  /// As commit(), but keeps the tree where only vertices moved.
+  void refit() { build(kiwami_scene_refit); }
+  template <std::predicate<double> Progress>
+  void refit(Progress&& progress) {
+    build(kiwami_scene_refit, progress);
   }
 
   /// Saves the committed scene; a file of that name stays whole until all is written.
@@ -253,18 +109,18 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
   }
 
   /// The closest hit of each ray. The spans have the same size.
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits,
-                   const kiwami_query* query = nullptr) const {
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const Query& query = {}) const {
     require_room(rays.size(), hits.size());
-    check(kiwami_closest_hit(get(), rays.data(), 0, hits.data(), 0, rays.size(), query));
+    check(query.run([&](const kiwami_query* c_query) {
+      return kiwami_closest_hit(get(), rays.data(), 0, hits.data(), 0, rays.size(), c_query);
+    }));
   }
-  std::vector<Hit> closest_hit(std::span<const Ray> rays,
-                               const kiwami_query* query = nullptr) const {
+  std::vector<Hit> closest_hit(std::span<const Ray> rays, const Query& query = {}) const {
     std::vector<Hit> hits(rays.size());
     closest_hit(rays, hits, query);
     return hits;
   }
-  Hit closest_hit(const Ray& ray, const kiwami_query* query = nullptr) const {
+  Hit closest_hit(const Ray& ray, const Query& query = {}) const {
     Hit hit;
     closest_hit({&ray, 1}, {&hit, 1}, query);
     return hit;
@@ -272,17 +128,18 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
 
   /// 1 for each ray that has a hit, 0 for the others.
   void any_hit(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
-               const kiwami_query* query = nullptr) const {
+               const Query& query = {}) const {
     require_room(rays.size(), occluded.size());
-    check(kiwami_any_hit(get(), rays.data(), 0, occluded.data(), 0, rays.size(), query));
+    check(query.run([&](const kiwami_query* c_query) {
+      return kiwami_any_hit(get(), rays.data(), 0, occluded.data(), 0, rays.size(), c_query);
+    }));
   }
-  std::vector<std::uint8_t> any_hit(std::span<const Ray> rays,
-                                    const kiwami_query* query = nullptr) const {
+  std::vector<std::uint8_t> any_hit(std::span<const Ray> rays, const Query& query = {}) const {
     std::vector<std::uint8_t> occluded(rays.size());
     any_hit(rays, occluded, query);
     return occluded;
   }
-  bool any_hit(const Ray& ray, const kiwami_query* query = nullptr) const {
+  bool any_hit(const Ray& ray, const Query& query = {}) const {
     std::uint8_t occluded = 0;
     any_hit({&ray, 1}, {&occluded, 1}, query);
     return occluded != 0;
@@ -290,14 +147,15 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
 
   /// The nearest max_hits hits of each ray, 0 standing for all, by rising distance.
   MultiHits multi_hit(std::span<const Ray> rays, std::uint32_t max_hits = 0,
-                      const kiwami_query* query = nullptr) const {
+                      const Query& query = {}) const {
     MultiHits found;
     found.offsets.resize(rays.size() + 1);
     found.hits.resize(rays.size());
     for (;;) {
-      const kiwami_result result =
-          kiwami_multi_hit(get(), rays.data(), 0, rays.size(), max_hits, found.hits.data(),
-                           found.hits.size(), found.offsets.data(), query);
+      const kiwami_result result = query.run([&](const kiwami_query* c_query) {
+        return kiwami_multi_hit(get(), rays.data(), 0, rays.size(), max_hits, found.hits.data(),
+                                found.hits.size(), found.offsets.data(), c_query);
+      });
       const std::size_t needed = static_cast<std::size_t>(found.offsets.back());
       if (result != KIWAMI_ERROR_CAPACITY) {
         check(result);
@@ -309,10 +167,11 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
   }
 
   /// How many hits each ray has.
-  std::vector<std::uint32_t> count_hits(std::span<const Ray> rays,
-                                        const kiwami_query* query = nullptr) const {
+  std::vector<std::uint32_t> count_hits(std::span<const Ray> rays, const Query& query = {}) const {
     std::vector<std::uint32_t> counts(rays.size());
-    check(kiwami_count_hits(get(), rays.data(), 0, counts.data(), 0, rays.size(), query));
+    check(query.run([&](const kiwami_query* c_query) {
+      return kiwami_count_hits(get(), rays.data(), 0, counts.data(), 0, rays.size(), c_query);
+    }));
     return counts;
   }
 
@@ -324,6 +183,20 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
     return scene;
   }
   void check(kiwami_result result) const { detail::check(result, device_.get()); }
+  void build(kiwami_result (*function)(kiwami_scene*)) {
+    check(detail::run_call([&] { return function(get()); }));
+  }
+  template <typename Progress>
+  void build(kiwami_result (*function)(kiwami_scene*), Progress& progress) {
+    detail::ProgressReport<Progress> report{progress, {}};
+    check(kiwami_scene_set_progress(get(), report.function(), &report));
+    // The function is gone after this call, however it ends.
+    const auto forget = [this](void*) { kiwami_scene_set_progress(get(), nullptr, nullptr); };
+    const std::unique_ptr<void, decltype(forget)> until_return(&report, forget);
+    const kiwami_result result = detail::run_call([&] { return function(get()); });
+    if (report.thrown) std::rethrow_exception(report.thrown);
+    check(result);
+  }
   static void require_room(std::size_t rays, std::size_t answers) {
     if (rays != answers) {
       throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "there is room for " + std::to_string(answers) +
@@ -332,6 +205,45 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
   }
 
   Device device_;
+};
+
+/// Three rows of four numbers, from a scene's space to the outer one.
+using Transform = std::array<float, 12>;
+
+/// An array of instances: each shows one of the scenes, moved by its transform.
+class Instances : public Geometry {
+ public:
+  /// scene_indices say which scene each instance shows; none: all show the first one. masks are
+  /// those of each instance, beside the mask of all. Everything is copied; the scenes are held.
+  Instances(const Device& device, std::span<const Scene> scenes,
+            std::span<const Transform> transforms,
+            std::span<const std::uint32_t> scene_indices = {},
+            std::span<const std::uint32_t> masks = {}, std::uint32_t mask = kAllMasks)
+      : Geometry(create(device, scenes, transforms, scene_indices, masks, mask)) {}
+
+ private:
+  static kiwami_geometry* create(const Device& device, std::span<const Scene> scenes,
+                                 std::span<const Transform> transforms,
+                                 std::span<const std::uint32_t> scene_indices,
+                                 std::span<const std::uint32_t> masks, std::uint32_t mask) {
+    std::vector<kiwami_scene*> shown;
+    for (const Scene& scene : scenes) shown.push_back(scene.get());
+    auto desc = detail::defaults(kiwami_instances_desc_init);
+    desc.scenes = shown.data();
+    desc.scene_count = shown.size();
+    desc.transforms = transforms.data();
+    desc.count = transforms.size();
+    if (!scene_indices.empty()) {
+      detail::require_equal(scene_indices.size(), transforms.size(), "scene_indices");
+      desc.scene_indices = scene_indices.data();
+    }
+    if (!masks.empty()) {
+      detail::require_equal(masks.size(), transforms.size(), "masks");
+      desc.masks = masks.data();
+    }
+    desc.mask = mask;
+    return detail::create_geometry(device, desc, kiwami_instances_create);
+  }
 };
 
 }  // namespace kiwami

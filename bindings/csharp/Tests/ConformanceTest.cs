@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The answers that every binding must give, to the bit.
 using System;
+using System.Collections.Generic;
 using System.IO;
 using System.Linq;
 using System.Runtime.InteropServices;
@@ -27,6 +28,15 @@ public sealed class Words {
   public float Float() {
     return BitConverter.ToSingle(BitConverter.GetBytes(Int()), 0);
   }
+  public float[] Floats(uint count) {
+    return Enumerable.Range(0, (int)count).Select(_ => Float()).ToArray();
+  }
+  public uint[] Ints(uint count) {
+    return Enumerable.Range(0, (int)count).Select(_ => Int()).ToArray();
+  }
+  public bool IsAtEnd {
+    get { return next == words.Length; }
+  }
   public Ray Ray() {
     return new Ray { OriginX = Float(), OriginY = Float(), OriginZ = Float(), TMin = Float(),
                      DirectionX = Float(), DirectionY = Float(), DirectionZ = Float(),
@@ -44,14 +54,19 @@ public sealed class Words {
 
 [TestFixture]
 public class ConformanceTest {
-  static readonly string Vectors =
-      File.ReadAllText(Environment.GetEnvironmentVariable("KIWAMI_VECTORS"));
+  static readonly string Folder =
+      Path.GetDirectoryName(Environment.GetEnvironmentVariable("KIWAMI_VECTORS"));
+  static readonly string Vectors = Read("vectors");
   static readonly float[] Corners = { 0, 0, 0, 1, 0, 0, 0, 1, 0 };
 
   /// Notes that features were found right, for the table of the documents.
-  static void Note(params string[] features) {
+  public static void Note(params string[] features) {
     string path = Environment.GetEnvironmentVariable("KIWAMI_FEATURES");
     if (path != null) File.AppendAllLines(path, features);
+  }
+
+  static string Read(string name) {
+    return File.ReadAllText(Path.Combine(Folder, name + ".txt"));
   }
 
   static void CheckMultiHit(Words words, Scene scene, Ray[] rays) {
@@ -68,11 +83,10 @@ public class ConformanceTest {
   }
 
   static void CheckFile(Words words, Device device, Scene scene, Ray[] rays) {
-    string folder = Path.GetDirectoryName(Environment.GetEnvironmentVariable("KIWAMI_VECTORS"));
     string saved = Path.GetTempFileName();
     scene.Save(saved);
     Hit[] expected = scene.ClosestHit(rays);
-    foreach (string path in new[] { saved, Path.Combine(folder, words.Word()) }) {
+    foreach (string path in new[] { saved, Path.Combine(Folder, words.Word()) }) {
       foreach (bool map in new[] { false, true }) {
         using (Scene loaded = Scene.Load(device, path, map, map)) {
           CollectionAssert.AreEqual(expected, loaded.ClosestHit(rays));
@@ -80,54 +94,158 @@ public class ConformanceTest {
       }
     }
     File.Delete(saved);
-    Assert.Throws<KiwamiException>(() => Scene.Load(device, Path.Combine(folder, "vectors.txt")));
+    Assert.Throws<KiwamiException>(() => Scene.Load(device, Path.Combine(Folder, "vectors.txt")));
     Note("files");
   }
 
-  static int CheckScene(Words words, Device device) {
-    using (var scene = new Scene(device)) {
-      words.Word();
-      string word = words.Word();
-      for (; word == "mesh"; word = words.Word()) {
-        uint mask = words.Int();
-        var vertices = new float[3 * words.Int()];
-        var triangles = new uint[3 * words.Int()];
-        for (int i = 0; i < vertices.Length; ++i) vertices[i] = words.Float();
-        for (int i = 0; i < triangles.Length; ++i) triangles[i] = words.Int();
-        scene.AddMesh(vertices, triangles, mask);
+  /// Adds a geometry of this kind, or says that it is none.
+  static bool AddGeometry(string kind, Words words, Scene scene,
+                          Dictionary<string, Scene> scenes) {
+    switch (kind) {
+      case "mesh": {
+        uint[] head = words.Ints(3);
+        float[] vertices = words.Floats(3 * head[1]);
+        scene.AddMesh(vertices, words.Ints(3 * head[2]), head[0]);
+        return true;
       }
-      Assert.AreEqual("rays", word);
-      var rays = new Ray[words.Int()];
-      for (int i = 0; i < rays.Length; ++i) rays[i] = words.Ray();
-      scene.Commit();
-      Assert.AreEqual("closest_hit", words.Word());
-      foreach (Hit hit in scene.ClosestHit(rays)) words.ExpectHit(hit);
-      Assert.AreEqual("any_hit", words.Word());
-      foreach (bool occluded in scene.AnyHit(rays)) Assert.AreEqual(words.Int() == 1, occluded);
-      for (word = words.Word(); word == "multi_hit"; word = words.Word()) {
-        CheckMultiHit(words, scene, rays);
+      case "moving_mesh": {
+        uint mask = words.Int(), steps = words.Int();
+        float[] times = words.Floats(2);
+        uint[] counts = words.Ints(2);
+        float[] vertices = words.Floats(3 * steps * counts[0]);
+        uint[] triangles = words.Ints(3 * counts[1]);
+        scene.AddMovingMesh(vertices, steps, triangles, times[0], times[1], mask);
+        return true;
       }
-      if (word == "file") {
-        CheckFile(words, device, scene, rays);
-        word = words.Word();
+      case "spheres": {
+        uint[] head = words.Ints(2);
+        scene.AddSpheres(words.Floats(4 * head[1]), head[0]);
+        return true;
       }
-      Assert.AreEqual("end", word);
-      Note("closest hit", "any hit", "multi hit", "counts");
-      return rays.Length;
+      case "discs": {
+        uint[] head = words.Ints(2);
+        float[] points = words.Floats(4 * head[1]);
+        scene.AddDiscs(points, words.Floats(3 * head[1]), head[0]);
+        return true;
+      }
+      case "curves": {
+        uint[] head = words.Ints(3);
+        float[] points = words.Floats(4 * head[1]);
+        scene.AddCurves(points, words.Ints(head[2]), head[0]);
+        return true;
+      }
+      case "instances":
+        AddInstances(words, scene, scenes);
+        return true;
+      default:
+        return false;
     }
   }
 
-  [TestCase(Isa.Auto)]
-  [TestCase(Isa.Scalar)]
-  public void AnswersAreTheSameToTheBit(Isa isa) {
+  static void AddInstances(Words words, Scene scene, Dictionary<string, Scene> scenes) {
+    uint[] head = words.Ints(3);
+    var shown = Enumerable.Range(0, (int)head[1]).Select(_ => scenes[words.Word()]).ToArray();
+    var transforms = new List<float>();
+    var indices = new uint[head[2]];
+    var masks = new uint[head[2]];
+    for (int i = 0; i < indices.Length; ++i) {
+      indices[i] = words.Int();
+      masks[i] = words.Int();
+      transforms.AddRange(words.Floats(12));
+    }
+    scene.AddInstances(shown, transforms.ToArray(), indices, masks, head[0]);
+  }
+
+  /// Changes the scene by one statement, or says that it does not change it.
+  static bool Change(string statement, Words words, Scene scene) {
+    switch (statement) {
+      case "commit":
+        scene.Commit();
+        return true;
+      case "refit":
+        scene.Refit();
+        return true;
+      case "vertices": {
+        uint[] head = words.Ints(2);
+        scene.UpdateVertices(head[0], words.Floats(3 * head[1]));
+        return true;
+      }
+      case "enable": {
+        uint[] head = words.Ints(2);
+        scene.Enable(head[0], head[1] != 0);
+        return true;
+      }
+      case "remove":
+        scene.Remove(words.Int());
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  static void Compare(string statement, Words words, Device device, Scene scene, Ray[] rays) {
+    switch (statement) {
+      case "closest_hit":
+        foreach (Hit hit in scene.ClosestHit(rays)) words.ExpectHit(hit);
+        break;
+      case "any_hit":
+        foreach (bool occluded in scene.AnyHit(rays)) Assert.AreEqual(words.Int() == 1, occluded);
+        break;
+      case "multi_hit":
+        CheckMultiHit(words, scene, rays);
+        break;
+      case "file":
+        CheckFile(words, device, scene, rays);
+        break;
+      default:
+        Assert.Fail("the vectors have '" + statement + "'");
+        break;
+    }
+  }
+
+  /// Returns how many rays were compared.
+  static int CheckScene(Words words, Device device, Dictionary<string, Scene> scenes) {
+    var scene = new Scene(device);
+    scenes[words.Word()] = scene;
+    var rays = new Ray[0];
+    int compared = 0;
+    for (string statement = words.Word(); statement != "end"; statement = words.Word()) {
+      if (statement == "rays") {
+        rays = new Ray[words.Int()];
+        for (int i = 0; i < rays.Length; ++i) rays[i] = words.Ray();
+        compared += rays.Length;
+      } else if (!AddGeometry(statement, words, scene, scenes) &&
+                 !Change(statement, words, scene)) {
+        Compare(statement, words, device, scene, rays);
+      }
+    }
+    return compared;
+  }
+
+  static void CheckFileOfVectors(string name, Isa isa) {
+    var scenes = new Dictionary<string, Scene>();
     using (var device = new Device(isa, 0, true)) {
-      var words = new Words(Vectors);
+      var words = new Words(Read(name));
       Assert.AreEqual("kiwami-conformance", words.Word());
       Assert.AreEqual("1", words.Word());
       int compared = 0;
-      while (words.Word() == "scene") compared += CheckScene(words, device);
+      while (!words.IsAtEnd && words.Word() == "scene") {
+        compared += CheckScene(words, device, scenes);
+      }
       Assert.Greater(compared, 100);
+      foreach (Scene each in scenes.Values) each.Dispose();
     }
+  }
+
+  [TestCase("vectors", "closest hit", "any hit", "multi hit", "counts")]
+  [TestCase("shapes", "spheres, discs, curves")]
+  [TestCase("moving_meshes", "moving meshes")]
+  [TestCase("instances", "instances")]
+  [TestCase("changes", "changes, refit")]
+  public void AnswersAreTheSameToTheBit(string name, params string[] features) {
+    CheckFileOfVectors(name, Isa.Auto);
+    CheckFileOfVectors(name, Isa.Scalar);
+    Note(features);
   }
 
   static void ExpectError(string name, TestDelegate call) {

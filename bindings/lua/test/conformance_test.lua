@@ -11,7 +11,9 @@ local function read(path)
   return text
 end
 
-local vectors = read("../conformance/vectors.txt")
+local function read_vectors(name) return read("../conformance/" .. name .. ".txt") end
+
+local vectors = read_vectors("vectors")
 
 local function equal(actual, expected, what)
   if actual ~= expected then
@@ -37,6 +39,17 @@ local function reader(text)
     for i = 0, count - 1 do array[i] = self.number() end
     return array
   end
+  function self.floats(count)
+    local bits = self.words_into(ffi.new("uint32_t[?]", math.max(count, 1)), count)
+    local values = ffi.new("float[?]", math.max(count, 1))
+    ffi.copy(values, bits, 4 * count)
+    return values
+  end
+  function self.numbers(count)
+    local values = {}
+    for i = 1, count do values[i] = self.number() end
+    return values
+  end
   function self.expect_words(array, count, what)
     for i = 0, count - 1 do equal(tonumber(array[i]), self.number(), what) end
   end
@@ -58,16 +71,6 @@ local function check_multi_hit(words, scene, rays, count)
   end
 end
 
-local function read_mesh(words, scene)
-  local mask, vertex_count, triangle_count = words.number(), words.number(), words.number()
-  local bits = words.words_into(ffi.new("uint32_t[?]", 3 * vertex_count), 3 * vertex_count)
-  local triangles = words.words_into(ffi.new("uint32_t[?]", math.max(3 * triangle_count, 1)),
-                                     3 * triangle_count)
-  scene:add_mesh(ffi.cast("float*", bits), triangles,
-                 { mask = mask, vertex_numbers = 3 * vertex_count,
-                   triangle_numbers = 3 * triangle_count })
-end
-
 local function check_file(words, device, scene, rays, count)
   local saved = os.tmpname()
   scene:save(saved)
@@ -85,50 +88,152 @@ local function check_file(words, device, scene, rays, count)
   note("files")
 end
 
-local function check_scene(words, device)
-  local scene = kiwami.scene(device)
-  words.word()
+-- Adds a geometry, by its kind.
+local geometries = {}
+
+function geometries.mesh(words, scene)
+  local mask, vertex_count, triangle_count = words.number(), words.number(), words.number()
+  local vertices = words.floats(3 * vertex_count)
+  scene:add_mesh(vertices, words.numbers(3 * triangle_count),
+                 { mask = mask, vertex_numbers = 3 * vertex_count })
+end
+
+function geometries.moving_mesh(words, scene)
+  local mask, steps, times = words.number(), words.number(), words.floats(2)
+  local vertex_count, triangle_count = words.number(), words.number()
+  local vertices = words.floats(3 * steps * vertex_count)
+  scene:add_moving_mesh(vertices, steps, words.numbers(3 * triangle_count),
+                        { mask = mask, vertex_numbers = 3 * steps * vertex_count,
+                          time_begin = times[0], time_end = times[1] })
+end
+
+function geometries.spheres(words, scene)
+  local mask, count = words.number(), words.number()
+  scene:add_spheres(words.floats(4 * count), { mask = mask, point_numbers = 4 * count })
+end
+
+function geometries.discs(words, scene)
+  local mask, count = words.number(), words.number()
+  local points = words.floats(4 * count)
+  scene:add_discs(points, words.floats(3 * count),
+                  { mask = mask, point_numbers = 4 * count, normal_numbers = 3 * count })
+end
+
+function geometries.curves(words, scene)
+  local mask, point_count, segment_count = words.number(), words.number(), words.number()
+  local points = words.floats(4 * point_count)
+  scene:add_curves(points, words.numbers(segment_count),
+                   { mask = mask, point_numbers = 4 * point_count })
+end
+
+function geometries.instances(words, scene, scenes)
+  local mask, scene_count, count = words.number(), words.number(), words.number()
+  local shown, indices, masks = {}, {}, {}
+  local transforms = ffi.new("float[?]", 12 * count)
+  for i = 1, scene_count do shown[i] = scenes[words.word()] end
+  for i = 1, count do
+    indices[i], masks[i] = words.number(), words.number()
+    ffi.copy(transforms + 12 * (i - 1), words.floats(12), 48)
+  end
+  scene:add_instances(shown, transforms, { scene_indices = indices, masks = masks, mask = mask,
+                                           transform_numbers = 12 * count })
+end
+
+-- Changes the scene, or compares answers, by the word of the statement.
+local statements = {}
+
+function statements.commit(_, state) state.scene:commit() end
+function statements.refit(_, state) state.scene:refit() end
+function statements.remove(words, state) state.scene:remove(words.number()) end
+
+function statements.vertices(words, state)
+  local geometry_id, count = words.number(), words.number()
+  state.scene:update_vertices(geometry_id, words.floats(3 * count), 3 * count)
+end
+
+function statements.enable(words, state)
+  local geometry_id, is_enabled = words.number(), words.number()
+  state.scene:enable(geometry_id, is_enabled ~= 0)
+end
+
+function statements.rays(words, state)
+  state.count = words.number()
+  state.rays = kiwami.rays(state.count)
+  words.words_into(as_words(state.rays), 12 * state.count)
+  state.compared = state.compared + state.count
+end
+
+function statements.closest_hit(words, state)
+  local hits = state.scene:closest_hit(state.rays, state.count)
+  words.expect_words(as_words(hits), 9 * state.count, "hit")
+end
+
+function statements.any_hit(words, state)
+  words.expect_words(state.scene:any_hit(state.rays, state.count), state.count, "occluded")
+end
+
+function statements.multi_hit(words, state)
+  check_multi_hit(words, state.scene, state.rays, state.count)
+end
+
+function statements.file(words, state)
+  check_file(words, state.device, state.scene, state.rays, state.count)
+end
+
+-- Returns how many rays were compared.
+local function check_scene(words, device, scenes)
+  local state = { device = device, scene = kiwami.scene(device), compared = 0 }
+  scenes[words.word()] = state.scene
   local word = words.word()
-  while word == "mesh" do
-    read_mesh(words, scene)
+  while word ~= "end" do
+    if geometries[word] then
+      geometries[word](words, state.scene, scenes)
+    else
+      assert(statements[word], word)(words, state)
+    end
     word = words.word()
   end
-  equal(word, "rays")
-  local count = words.number()
-  local rays = kiwami.rays(count)
-  words.words_into(as_words(rays), 12 * count)
-  scene:commit()
-  equal(words.word(), "closest_hit")
-  words.expect_words(as_words(scene:closest_hit(rays, count)), 9 * count, "hit")
-  equal(words.word(), "any_hit")
-  words.expect_words(scene:any_hit(rays, count), count, "occluded")
-  word = words.word()
-  while word == "multi_hit" do
-    check_multi_hit(words, scene, rays, count)
-    word = words.word()
-  end
-  if word == "file" then
-    check_file(words, device, scene, rays, count)
-    word = words.word()
-  end
-  equal(word, "end")
-  note("closest hit", "any hit", "multi hit", "counts")
-  scene:close()
-  return count
+  return state.compared
 end
 
 local tests = {}
 
-function tests.answers_are_the_same_to_the_bit()
+local function check_vectors(name, ...)
   for _, isa in ipairs({ "auto", "scalar" }) do
     local device = kiwami.device({ isa = isa, validate = true })
-    local words = reader(vectors)
+    local words, scenes, compared = reader(read_vectors(name)), {}, 0
     equal(words.word(), "kiwami-conformance")
     equal(words.word(), "1")
-    local compared = 0
-    while words.word() == "scene" do compared = compared + check_scene(words, device) end
+    while words.word() == "scene" do
+      compared = compared + check_scene(words, device, scenes)
+    end
     assert(compared > 100)
+    for _, scene in pairs(scenes) do scene:close() end
   end
+  note(...)
+end
+
+function tests.answers_are_the_same_to_the_bit()
+  check_vectors("vectors", "closest hit", "any hit", "multi hit", "counts")
+  check_vectors("shapes", "spheres, discs, curves")
+  check_vectors("moving_meshes", "moving meshes")
+  check_vectors("instances", "instances")
+  check_vectors("changes", "changes, refit")
+end
+
+function tests.geometries_of_wrong_sizes_are_errors()
+  local scene, other = kiwami.scene(), kiwami.scene()
+  local zeros = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+  equal(pcall(scene.add_discs, scene, { 0, 0, 0, 1 }, {}), false)
+  equal(pcall(scene.add_moving_mesh, scene, { 0, 0, 0 }, 2, {}), false)
+  equal(pcall(scene.add_moving_mesh, scene, { 0, 0, 0 }, 0, {}), false)
+  equal(pcall(scene.add_instances, scene, { other }, zeros, { scene_indices = { 0, 0 } }), false)
+  equal(pcall(scene.add_instances, scene, {}, zeros), false)
+  equal(pcall(scene.update_vertices, scene, 0, { 0, 0, 0 }), false)
+  equal(scene:add_spheres({ 0, 0, 0, 1 }), 0)
+  equal(pcall(scene.update_vertices, scene, 0, { 0, 0, 0 }), false)
+  scene:commit()
+  scene:close()
 end
 
 function tests.errors_are_the_same()

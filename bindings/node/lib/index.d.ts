@@ -63,10 +63,36 @@ export class Scene {
     triangles: ArrayLike<number>,
     options?: { mask?: number },
   ): number;
+  addMovingMesh(
+    vertices: ArrayLike<number>,
+    stepCount: number,
+    triangles: ArrayLike<number>,
+    options?: { times?: [number, number]; mask?: number },
+  ): number;
+  addSpheres(points: ArrayLike<number>, options?: { mask?: number }): number;
+  addDiscs(
+    points: ArrayLike<number>,
+    normals: ArrayLike<number>,
+    options?: { mask?: number },
+  ): number;
+  addCurves(
+    points: ArrayLike<number>,
+    segments: ArrayLike<number>,
+    options?: { mask?: number },
+  ): number;
+  addInstances(
+    scenes: Scene[],
+    transforms: ArrayLike<number>,
+    options?: { sceneIndices?: ArrayLike<number>; masks?: ArrayLike<number>; mask?: number },
+  ): number;
+  updateVertices(geometryId: number, vertices: ArrayLike<number>): void;
+  enable(geometryId: number, isEnabled?: boolean): void;
   remove(geometryId: number): void;
   setParameter(parameter: number, value: number): void;
   commit(): Promise<void>;
   commitSync(): void;
+  refit(): Promise<void>;
+  refitSync(): void;
   save(path: string): void;
   static load(
     path: string,

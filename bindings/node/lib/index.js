@@ -2,10 +2,14 @@
 // Kiwami for Node: ray tracing on CPUs, in batches of typed arrays.
 'use strict';
 
+const { Geometries } = require('./geometries');
+const { ALL_MASKS, Handle, addressable } = require('./handle');
 const {
   KiwamiError,
+  callAsync,
   check,
   constants,
+  log,
   native,
   receiveHandle,
   receiveStruct,
@@ -19,47 +23,8 @@ const ISAS = {
   avx2: constants.KIWAMI_ISA_AVX2,
   avx512: constants.KIWAMI_ISA_AVX512,
 };
-const ALL_MASKS = 0xffffffff;
 const RAY_WORDS = 12;
 const HIT_WORDS = 9;
-
-const released = new FinalizationRegistry((release) => release());
-
-/** Owns one reference to an object of the library. */
-class Handle {
-  constructor(object, release) {
-    this.object = object;
-    this.release = () => release(object);
-    released.register(this, this.release, this);
-  }
-
-  /** The object for a call. */
-  get address() {
-    if (!this.object) throw new Error(`this ${this.constructor.name} is closed`);
-    return this.object;
-  }
-
-  /** Owns another object in place of this one. */
-  replace(object) {
-    native.kiwami_scene_release(this.object);
-    released.unregister(this);
-    this.object = object;
-    const { device } = this;
-    this.release = () => {
-      native.kiwami_scene_release(object);
-      native.kiwami_device_release(device);
-    };
-    released.register(this, this.release, this);
-  }
-
-  /** Lets go of the object at once. Closing twice is allowed. */
-  close() {
-    if (!this.object) return;
-    this.object = null;
-    released.unregister(this);
-    this.release();
-  }
-}
 
 /** Kernels of one instruction set and the threads that run them. */
 class Device extends Handle {
@@ -71,6 +36,7 @@ class Device extends Handle {
       isa: ISAS[isa],
       thread_count: threads,
       flags: validate ? constants.KIWAMI_DEVICE_VALIDATE : 0,
+      log,
     };
     const object = withDescriptor(
       'kiwami_device_desc',
@@ -163,26 +129,8 @@ class Hits {
   }
 }
 
-/** An address for an array that may be empty: the library takes null only where nothing is. */
-const addressable = (array) => (array.length ? array : new Uint8Array(1));
-
-/** Numbers as an array of this kind: itself if it is one, else a copy whose values are checked. */
-function typed(Kind, values, name) {
-  if (values.length % 3 !== 0) {
-    throw new RangeError(`${name} has ${values.length} numbers, expected a multiple of 3`);
-  }
-  if (values instanceof Kind) return values;
-  const array = Kind.from(values);
-  const isKept = (value, i) => Kind !== Uint32Array || value === array[i];
-  const changed = Array.prototype.findIndex.call(values, (value, i) => !isKept(value, i));
-  if (changed >= 0) {
-    throw new RangeError(`${name} holds ${values[changed]}, expected whole numbers from 0 on`);
-  }
-  return array;
-}
-
 /** Meshes under one acceleration structure. Changes take effect with commit(). */
-class Scene extends Handle {
+class Scene extends Geometries {
   /** An empty scene. */
   constructor(device = new Device()) {
     const object = receiveHandle((target) =>
@@ -190,15 +138,7 @@ class Scene extends Handle {
     );
     const held = device.address;
     native.kiwami_device_retain(held);
-    super(object, (scene) => {
-      native.kiwami_scene_release(scene);
-      native.kiwami_device_release(held);
-    });
-    this.device = held;
-  }
-
-  check(result) {
-    check(result, this.device);
+    super(object, held);
   }
 
   /** Saves the committed scene; a file of that name stays whole until all is written. */
@@ -225,41 +165,6 @@ class Scene extends Handle {
     return scene;
   }
 
-  /** Adds a mesh, copied: three numbers a vertex, three a triangle. Returns the number that hits
-   * report. Only a ray with (its mask & mask) !== 0 meets it. */
-  addMesh(vertices, triangles, { mask = ALL_MASKS } = {}) {
-    const positions = typed(Float32Array, vertices, 'vertices');
-    const indices = typed(Uint32Array, triangles, 'triangles');
-    const changes = {
-      vertices: addressable(positions),
-      vertex_count: positions.length / 3,
-      indices: addressable(indices),
-      triangle_count: indices.length / 3,
-      mask,
-    };
-    const geometry = withDescriptor(
-      'kiwami_triangle_mesh_desc',
-      native.kiwami_triangle_mesh_desc_init,
-      changes,
-      (desc) =>
-        receiveHandle((target) =>
-          this.check(native.kiwami_triangle_mesh_create(this.device, desc, target)),
-        ),
-    );
-    const number = new Uint32Array(1);
-    try {
-      this.check(native.kiwami_scene_attach(this.address, geometry, number));
-    } finally {
-      native.kiwami_geometry_release(geometry);
-    }
-    return number[0];
-  }
-
-  /** Removes a mesh; its number becomes free. */
-  remove(geometryId) {
-    this.check(native.kiwami_scene_detach(this.address, geometryId));
-  }
-
   /** Sets one of KIWAMI_PARAMETER_*, found in `constants`. */
   setParameter(parameter, value) {
     this.check(native.kiwami_scene_set_parameter(this.address, parameter, value));
@@ -268,19 +173,23 @@ class Scene extends Handle {
   /** Builds the acceleration structure on another thread; nothing else may use the scene until
    * the promise is settled. */
   commit() {
-    return new Promise((resolve, reject) => {
-      // The sentence of an error stays on that thread; a second commit here would repeat the work.
-      native.kiwami_scene_commit.async(this.address, (problem, result) => {
-        if (problem) reject(problem);
-        else if (result === constants.KIWAMI_OK) resolve();
-        else reject(new KiwamiError(result, native.kiwami_result_name(result)));
-      });
-    });
+    return callAsync(native.kiwami_scene_commit, this.address);
   }
 
   /** The same on this thread. */
   commitSync() {
     this.check(native.kiwami_scene_commit(this.address));
+  }
+
+  /** As commit(), but keeps the tree where only vertices moved: quicker to make, and, the further
+   * they moved, slower to trace. */
+  refit() {
+    return callAsync(native.kiwami_scene_refit, this.address);
+  }
+
+  /** The same on this thread. */
+  refitSync() {
+    this.check(native.kiwami_scene_refit(this.address));
   }
 
   /** The closest hit of each ray; into hits, if they are given. */

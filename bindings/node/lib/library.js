@@ -3,7 +3,7 @@
 'use strict';
 
 const koffi = require('koffi');
-const { constants, functions, structs } = require('./native');
+const { callbacks, constants, functions, structs } = require('./native');
 
 /** An error of the library: its number as `result`, its sentence as the message. */
 class KiwamiError extends Error {
@@ -32,14 +32,49 @@ if (native.kiwami_abi_version() !== constants.KIWAMI_ABI_VERSION) {
   );
 }
 
+// A sentence can be asked for on the thread alone where the call failed, which for an asynchronous
+// call is one of Node's own. But the library logs it, too, and koffi brings that here.
+let runningCalls = 0;
+let logged = [];
+
+/** Where devices log: a function of the process, which never ends. */
+const log = koffi.register((user, result, sentence) => {
+  if (runningCalls === 0 || result === constants.KIWAMI_OK) return;
+  logged.push({ result, sentence: koffi.decode(sentence, 'char', -1) });
+}, koffi.pointer(koffi.proto(callbacks.find((each) => each.includes(' kiwami_log(')))));
+
+/** The first sentence of this kind that was logged, which is then gone. */
+function takeLogged(isIt) {
+  const index = logged.findIndex(isIt);
+  return index < 0 ? undefined : logged.splice(index, 1)[0].sentence;
+}
+
 /** Throws what a result stands for, unless it is success. */
 function check(result, device = null) {
   if (result === constants.KIWAMI_OK) return;
   const text = Buffer.alloc(1024);
   native.kiwami_last_error(device, text, text.length);
   const sentence = text.toString('utf8', 0, text.indexOf(0));
+  takeLogged((each) => each.sentence === sentence);
   throw new KiwamiError(result, sentence || native.kiwami_result_name(result));
 }
+
+/** Runs a function of the library on another thread; the promise fails as check() does. */
+function callAsync(call, ...values) {
+  ++runningCalls;
+  return new Promise((resolve, reject) => {
+    call.async(...values, (problem, result) => {
+      const sentence = takeLogged((each) => each.result === result);
+      if (--runningCalls === 0) logged = [];
+      if (problem) reject(problem);
+      else if (result === constants.KIWAMI_OK) resolve();
+      else reject(new KiwamiError(result, sentence || native.kiwami_result_name(result)));
+    });
+  });
+}
+
+/** The number of an object's address. */
+const addressOf = (object) => koffi.address(object);
 
 /** Calls body(descriptor, size) with a struct's default values, changed by these fields. */
 function withDescriptor(name, init, changes, body) {
@@ -66,8 +101,11 @@ function receiveHandle(body) {
 
 module.exports = {
   KiwamiError,
+  addressOf,
+  callAsync,
   check,
   constants,
+  log,
   native,
   receiveHandle,
   receiveStruct,

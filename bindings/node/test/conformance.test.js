@@ -9,7 +9,9 @@ const path = require('node:path');
 const test = require('node:test');
 const { Device, Hits, KiwamiError, Rays, Scene, constants } = require('..');
 
-const vectors = fs.readFileSync(path.join(__dirname, '../../conformance/vectors.txt'), 'utf8');
+const folder = path.join(__dirname, '../../conformance');
+const read = (name) => fs.readFileSync(path.join(folder, `${name}.txt`), 'utf8');
+const vectors = read('vectors');
 
 // Notes that features were found right, for the table of the documents.
 function note(...features) {
@@ -19,7 +21,7 @@ function note(...features) {
 
 class Words {
   constructor(text) {
-    this.words = text.split(/\s+/);
+    this.words = text.trim().split(/\s+/);
     this.next = 0;
   }
   word() {
@@ -30,6 +32,9 @@ class Words {
   }
   numbers(count) {
     return Array.from({ length: count }, () => this.number());
+  }
+  floats(count) {
+    return new Float32Array(Uint32Array.from(this.numbers(count)).buffer);
   }
 }
 
@@ -47,7 +52,6 @@ function checkMultiHit(words, scene, rays) {
 }
 
 function checkFile(words, device, scene, rays) {
-  const folder = path.join(__dirname, '../../conformance');
   const saved = path.join(os.tmpdir(), `kiwami-${process.pid}.kiwami`);
   scene.save(saved);
   const expected = scene.closestHit(rays).words;
@@ -63,46 +67,108 @@ function checkFile(words, device, scene, rays) {
   note('files');
 }
 
-async function checkScene(words, device) {
-  const scene = new Scene(device);
-  words.word();
-  let word = words.word();
-  for (; word === 'mesh'; word = words.word()) {
+// Adds a geometry, by its kind.
+const geometries = {
+  mesh(words, scene) {
     const [mask, vertexCount, triangleCount] = words.numbers(3);
-    const bits = Uint32Array.from(words.numbers(3 * vertexCount));
-    scene.addMesh(new Float32Array(bits.buffer), words.numbers(3 * triangleCount), { mask });
+    const vertices = words.floats(3 * vertexCount);
+    scene.addMesh(vertices, words.numbers(3 * triangleCount), { mask });
+  },
+  moving_mesh(words, scene) {
+    const [mask, steps] = words.numbers(2);
+    const times = [...words.floats(2)];
+    const [vertexCount, triangleCount] = words.numbers(2);
+    const vertices = words.floats(3 * steps * vertexCount);
+    scene.addMovingMesh(vertices, steps, words.numbers(3 * triangleCount), { times, mask });
+  },
+  spheres(words, scene) {
+    const [mask, count] = words.numbers(2);
+    scene.addSpheres(words.floats(4 * count), { mask });
+  },
+  discs(words, scene) {
+    const [mask, count] = words.numbers(2);
+    const points = words.floats(4 * count);
+    scene.addDiscs(points, words.floats(3 * count), { mask });
+  },
+  curves(words, scene) {
+    const [mask, pointCount, segmentCount] = words.numbers(3);
+    const points = words.floats(4 * pointCount);
+    scene.addCurves(points, words.numbers(segmentCount), { mask });
+  },
+  instances(words, scene, scenes) {
+    const [mask, sceneCount, count] = words.numbers(3);
+    const shown = Array.from({ length: sceneCount }, () => scenes.get(words.word()));
+    const [sceneIndices, masks, transforms] = [[], [], []];
+    for (let i = 0; i < count; ++i) {
+      sceneIndices.push(words.number());
+      masks.push(words.number());
+      transforms.push(...words.floats(12));
+    }
+    scene.addInstances(shown, transforms, { sceneIndices, masks, mask });
+  },
+};
+
+// Changes the scene, or compares answers, by the word of the statement.
+const statements = {
+  commit: (words, state) => state.scene.commit(),
+  refit: (words, state) => state.scene.refit(),
+  vertices(words, { scene }) {
+    const [geometryId, count] = words.numbers(2);
+    scene.updateVertices(geometryId, words.floats(3 * count));
+  },
+  enable(words, { scene }) {
+    const [geometryId, isEnabled] = words.numbers(2);
+    scene.enable(geometryId, isEnabled !== 0);
+  },
+  remove: (words, { scene }) => scene.remove(words.number()),
+  rays(words, state) {
+    state.rays = new Rays(words.number());
+    state.rays.words.set(words.numbers(12 * state.rays.count));
+    state.compared += state.rays.count;
+  },
+  closest_hit(words, { scene, rays }) {
+    assert.deepStrictEqual([...scene.closestHit(rays).words], words.numbers(9 * rays.count));
+  },
+  any_hit(words, { scene, rays }) {
+    assert.deepStrictEqual([...scene.anyHit(rays)], words.numbers(rays.count));
+  },
+  multi_hit: (words, { scene, rays }) => checkMultiHit(words, scene, rays),
+  file: (words, { device, scene, rays }) => checkFile(words, device, scene, rays),
+};
+
+// Returns how many rays were compared.
+async function checkScene(words, device, scenes) {
+  const state = { device, scene: new Scene(device), rays: null, compared: 0 };
+  scenes.set(words.word(), state.scene);
+  for (let word = words.word(); word !== 'end'; word = words.word()) {
+    if (word in geometries) geometries[word](words, state.scene, scenes);
+    else await statements[word](words, state);
   }
-  assert.strictEqual(word, 'rays');
-  const rays = new Rays(words.number());
-  rays.words.set(words.numbers(12 * rays.count));
-  await scene.commit();
-  assert.strictEqual(words.word(), 'closest_hit');
-  assert.deepStrictEqual([...scene.closestHit(rays).words], words.numbers(9 * rays.count));
-  assert.strictEqual(words.word(), 'any_hit');
-  assert.deepStrictEqual([...scene.anyHit(rays)], words.numbers(rays.count));
-  for (word = words.word(); word === 'multi_hit'; word = words.word()) {
-    checkMultiHit(words, scene, rays);
-  }
-  if (word === 'file') {
-    checkFile(words, device, scene, rays);
-    word = words.word();
-  }
-  assert.strictEqual(word, 'end');
-  note('closest hit', 'any hit', 'multi hit', 'counts');
-  scene.close();
-  return rays.count;
+  return state.compared;
 }
 
-for (const isa of ['auto', 'scalar']) {
-  test(`answers are the same to the bit: ${isa}`, async () => {
-    const device = new Device({ isa, validate: true });
-    const words = new Words(vectors);
-    assert.strictEqual(words.word(), 'kiwami-conformance');
-    assert.strictEqual(words.word(), '1');
-    let compared = 0;
-    while (words.word() === 'scene') compared += await checkScene(words, device);
-    assert.ok(compared > 100);
-    device.close();
+const files = {
+  vectors: ['closest hit', 'any hit', 'multi hit', 'counts'],
+  shapes: ['spheres, discs, curves'],
+  moving_meshes: ['moving meshes'],
+  instances: ['instances'],
+  changes: ['changes, refit'],
+};
+for (const [name, features] of Object.entries(files)) {
+  test(`answers are the same to the bit: ${name}`, async () => {
+    for (const isa of ['auto', 'scalar']) {
+      const device = new Device({ isa, validate: true });
+      const scenes = new Map();
+      const words = new Words(read(name));
+      assert.strictEqual(words.word(), 'kiwami-conformance');
+      assert.strictEqual(words.word(), '1');
+      let compared = 0;
+      while (words.word() === 'scene') compared += await checkScene(words, device, scenes);
+      assert.ok(compared > 100);
+      for (const scene of scenes.values()) scene.close();
+      device.close();
+    }
+    note(...features);
   });
 }
 
@@ -153,4 +219,40 @@ test('rays are made from arrays', () => {
   assert.strictEqual(hits.t(0), 1);
   assert.deepStrictEqual([hits.u(0), hits.v(0), ...hits.normal(0)], [0.25, 0.25, 0, 0, 1]);
   assert.deepStrictEqual([hits.isHit(0), hits.isHit(1)], [true, false]);
+});
+
+test('a promise fails with the sentence of the library', async () => {
+  const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
+  const device = new Device();
+  const scenes = [0, 1].map(() => new Scene(device));
+  for (const scene of scenes) scene.addInstances([new Scene(device)], identity);
+  let sentence;
+  assert.throws(() => scenes[0].commitSync(), (problem) => {
+    sentence = problem.message;
+    return problem instanceof KiwamiError && sentence.length > 30;
+  });
+  // Also while other calls fail: at the same time, and here.
+  const settled = Promise.allSettled(scenes.map((scene) => scene.commit()));
+  assert.throws(() => new Scene(device).remove(5), /5/);
+  for (const { reason } of await settled) {
+    assert.ok(reason instanceof KiwamiError);
+    assert.strictEqual(reason.message, sentence);
+  }
+  scenes[0].remove(0);
+  await scenes[0].commit();
+});
+
+test('geometries of wrong sizes are exceptions', () => {
+  const scene = new Scene();
+  assert.throws(() => scene.addDiscs([0, 0, 0, 1], []), RangeError);
+  assert.throws(() => scene.addMovingMesh(new Float32Array(9), 2, []), RangeError);
+  assert.throws(() => scene.addMovingMesh(new Float32Array(9), 0, []), KiwamiError);
+  assert.throws(() => scene.addInstances([], new Float32Array(12)), KiwamiError);
+  const other = new Scene();
+  const bad = { sceneIndices: [0, 0] };
+  assert.throws(() => scene.addInstances([other], new Float32Array(12), bad), RangeError);
+  assert.throws(() => scene.updateVertices(0, [0, 0, 0]), RangeError);
+  scene.commitSync();
+  scene.close();
+  other.close();
 });

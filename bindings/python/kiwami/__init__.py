@@ -30,6 +30,7 @@ from .lights import LightTree, light_dtype
 from .raycasting import RaycastingScene
 from .scene import Scene
 from .trimesh_ray import RayMeshIntersector
+from .user_geometry import user_hit_dtype
 
 _number = _loaded.kiwami_version()
 __version__ = f"{_number // 1000000}.{_number // 1000 % 1000}.{_number % 1000}"
@@ -78,4 +79,5 @@ __all__ = [
     "light_dtype",
     "make_rays",
     "ray_dtype",
+    "user_hit_dtype",
 ]

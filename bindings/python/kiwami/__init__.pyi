@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from os import PathLike
 from types import TracebackType
-from typing import Any, Callable, Literal
+from typing import Any, Callable, Iterable, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +11,7 @@ INVALID_ID: int
 ray_dtype: np.dtype[np.void]
 hit_dtype: np.dtype[np.void]
 light_dtype: np.dtype[np.void]
+user_hit_dtype: np.dtype[np.void]
 
 class KiwamiError(Exception):
     result: int | None
@@ -114,6 +115,31 @@ class Scene(_Handle):
     def add_discs(self, points: ArrayLike, normals: ArrayLike, *, mask: int = ...) -> int: ...
     def add_curves(
         self, points: ArrayLike, segments: ArrayLike | None = ..., *, mask: int = ...
+    ) -> int: ...
+    def add_moving_mesh(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike | None = ...,
+        *,
+        times: tuple[float, float] = ...,
+        mask: int = ...,
+    ) -> int: ...
+    def add_instances(
+        self,
+        scenes: Scene | Iterable[Scene],
+        transforms: ArrayLike,
+        *,
+        scene_indices: ArrayLike | None = ...,
+        masks: ArrayLike | None = ...,
+        mask: int = ...,
+    ) -> int: ...
+    def add_user_geometry(
+        self,
+        count: int,
+        bounds: Callable[[int, int], ArrayLike],
+        intersect: Callable[[np.void, NDArray[np.uint32]], Any],
+        *,
+        mask: int = ...,
     ) -> int: ...
     def remove(self, geometry_id: int) -> None: ...
     def enable(self, geometry_id: int, is_enabled: bool = ...) -> None: ...

@@ -6,6 +6,7 @@ import ctypes
 from . import _native
 from ._library import check, descriptor, library
 from .errors import CallbackError
+from .user_geometry import raised_in_calls
 
 
 def check_callbacks(result, device, raised):
@@ -21,7 +22,7 @@ def check_callbacks(result, device, raised):
 
 
 class PlainQuery:
-    """The defaults."""
+    """The defaults, for one call. What user geometries raise meanwhile is the cause of its error."""
 
     address = None
 
@@ -29,13 +30,15 @@ class PlainQuery:
         self._device = device
 
     def __enter__(self):
+        self._begin = raised_in_calls.begin()
         return self
 
     def __exit__(self, *_):
-        pass
+        raised_in_calls.end(self._begin)
 
     def check(self, result):
-        check(result, self._device)
+        if result != _native.KIWAMI_OK:
+            check_callbacks(result, self._device, raised_in_calls.since(self._begin))
 
 
 class FilteredQuery(PlainQuery):
@@ -50,11 +53,14 @@ class FilteredQuery(PlainQuery):
         self.address = ctypes.byref(self._desc)
 
     def __exit__(self, *_):
+        super().__exit__()
         # The callback and what it refers to end here, not with the next run of the collector.
         self._desc = self._callback = self.address = self._raised = None
 
     def check(self, result):
-        check_callbacks(result, self._device, self._raised)
+        if self._raised:
+            check_callbacks(result, self._device, self._raised)
+        super().check(result)
 
 
 def _guarded(function, raised):

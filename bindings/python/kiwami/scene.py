@@ -8,14 +8,9 @@ import numpy as np
 
 from . import _native
 from ._library import Handle, check, descriptor, library
-from .arrays import (
-    as_dense_rows,
-    as_index_column,
-    as_indices,
-    as_positions,
-)
+from .callbacks import PlainQuery
 from .device import default_device
-from .errors import InvalidArgumentError, KiwamiError
+from .geometries import Geometries
 from .hits import Hits, hits_for
 from .rays import RayBatch
 
@@ -26,12 +21,8 @@ QUALITIES = {
 }
 
 
-class _Geometry(Handle):
-    _release = staticmethod(library.kiwami_geometry_release)
-
-
-class Scene(Handle):
-    """Triangle meshes under one acceleration structure.
+class Scene(Geometries, Handle):
+    """Geometries under one acceleration structure.
 
         scene = kiwami.Scene(vertices, faces)
         hits = scene.closest(origins, directions)
@@ -64,130 +55,9 @@ class Scene(Handle):
         elif faces is not None:
             raise TypeError("faces are given without vertices")
 
-    def _hold_nothing(self):
-        self._geometries = {}
-        self._vertex_counts = {}
-        self._shared = set()
-        self._buffers = []
-
     @property
     def device(self):
         return self._device
-
-    def add(self, vertices, faces=None, *, mask=0xFFFFFFFF, share=False):
-        """Adds a mesh and returns its number, which hits report as geometry_id.
-
-        share  the library reads float32 and uint32 arrays where they lie instead of copying them;
-               they may not change while the scene lives.
-        """
-        desc = descriptor(
-            _native.kiwami_triangle_mesh_desc, library.kiwami_triangle_mesh_desc_init
-        )
-        positions = as_positions(vertices, "vertices")
-        desc.vertices, desc.vertex_count = positions.ctypes.data, positions.shape[0]
-        desc.vertex_stride = positions.strides[0] if positions.shape[0] > 1 else 12
-        indices = None
-        if faces is None:
-            desc.triangle_count = positions.shape[0] // 3
-        else:
-            indices = as_indices(faces, positions.shape[0], "faces")
-            desc.indices, desc.triangle_count = indices.ctypes.data, indices.shape[0]
-            desc.index_stride = indices.strides[0] if indices.shape[0] > 1 else 12
-        desc.mask = mask
-        desc.flags = _native.KIWAMI_MESH_SHARE_BUFFERS if share else 0
-        number = self._attach(
-            library.kiwami_triangle_mesh_create, desc, (positions, indices) if share else None
-        )
-        self._vertex_counts[number] = len(positions)
-        self._shared.discard(number)
-        if share:
-            self._shared.add(number)
-        return number
-
-    def _attach(self, create, desc, buffers):
-        """Makes a geometry, attaches it, and keeps the arrays that it shares."""
-        address = ctypes.c_void_p()
-        check(create(self._device, ctypes.byref(desc), ctypes.byref(address)), self._device)
-        geometry = _Geometry(address.value)
-        number = ctypes.c_uint32()
-        try:
-            check(library.kiwami_scene_attach(self, geometry, ctypes.byref(number)), self._device)
-        except KiwamiError:
-            geometry.close()
-            raise
-        self._geometries[number.value] = geometry
-        # What was committed may still read the arrays of a geometry that was removed.
-        if buffers is not None:
-            self._buffers.append(buffers)
-        self._changed = True
-        return number.value
-
-    def add_spheres(self, points, *, mask=0xFFFFFFFF):
-        """Adds spheres: (N, 4) of x, y, z and radius. Returns their number as of add()."""
-        desc = descriptor(_native.kiwami_spheres_desc, library.kiwami_spheres_desc_init)
-        rows = as_dense_rows(points, 4, "points")
-        desc.points, desc.sphere_count, desc.mask = rows.ctypes.data, len(rows), mask
-        return self._attach(library.kiwami_spheres_create, desc, None)
-
-    def add_discs(self, points, normals, *, mask=0xFFFFFFFF):
-        """Adds flat discs: (N, 4) of x, y, z and radius, and (N, 3) normals."""
-        desc = descriptor(_native.kiwami_discs_desc, library.kiwami_discs_desc_init)
-        rows = as_dense_rows(points, 4, "points")
-        directions = as_dense_rows(normals, 3, "normals")
-        if len(rows) != len(directions):
-            raise ValueError(f"normals has {len(directions)} rows, expected {len(rows)}")
-        desc.points, desc.normals = rows.ctypes.data, directions.ctypes.data
-        desc.disc_count, desc.mask = len(rows), mask
-        return self._attach(library.kiwami_discs_create, desc, None)
-
-    def add_curves(self, points, segments=None, *, mask=0xFFFFFFFF):
-        """Adds round curve segments: (N, 4) of x, y, z and radius; segment i joins the points
-        segments[i] and segments[i] + 1, or, without segments, i and i + 1."""
-        desc = descriptor(_native.kiwami_curves_desc, library.kiwami_curves_desc_init)
-        rows = as_dense_rows(points, 4, "points")
-        desc.points, desc.point_count, desc.mask = rows.ctypes.data, len(rows), mask
-        if segments is None:
-            desc.segment_count = max(len(rows) - 1, 0)
-        else:
-            indices = as_index_column(segments, len(rows) - 1, "segments")
-            desc.indices, desc.segment_count = indices.ctypes.data, len(indices)
-        return self._attach(library.kiwami_curves_create, desc, None)
-
-    def _geometry(self, geometry_id):
-        if geometry_id not in self._geometries:
-            raise InvalidArgumentError(
-                f"geometry_id is {geometry_id}, expected the number of a mesh that add() gave"
-            )
-        return self._geometries[geometry_id]
-
-    def remove(self, geometry_id):
-        """Removes a geometry; its number becomes free."""
-        check(library.kiwami_scene_detach(self, geometry_id), self._device)
-        self._geometries.pop(geometry_id, None)
-        self._changed = True
-
-    def enable(self, geometry_id, is_enabled=True):
-        """Takes a geometry in again, or leaves it out, under its number."""
-        check(library.kiwami_scene_enable(self, geometry_id, int(is_enabled)), self._device)
-        self._changed = True
-
-    def move(self, geometry_id, vertices):
-        """Gives a mesh other vertices, as many as before; refit() or commit() shows them."""
-        positions = as_positions(vertices, "vertices")
-        geometry = self._geometry(geometry_id)
-        expected = self._vertex_counts.get(geometry_id)
-        if expected is not None and len(positions) != expected:
-            raise ValueError(f"vertices has {len(positions)} rows, expected {expected}")
-        stride = positions.strides[0] if len(positions) > 1 else 12
-        check(
-            library.kiwami_triangle_mesh_update_vertices(
-                geometry, positions.ctypes.data, 0, stride
-            ),
-            self._device,
-        )
-        if geometry_id in self._shared:
-            self._buffers.append((positions,))
-        self._changed = True
 
     def refit(self, progress=None):
         """As commit(), but keeps the tree where only vertices moved: quicker to make, and, the
@@ -209,6 +79,7 @@ class Scene(Handle):
         self._build(library.kiwami_scene_commit, progress)
 
     def _build(self, build, progress):
+        self._prepare_shown()
         raised = []
 
         def report(_, fraction):
@@ -221,14 +92,15 @@ class Scene(Handle):
         callback = _native.kiwami_progress(report) if progress else None
         if callback:
             check(library.kiwami_scene_set_progress(self, callback, None), self._device)
-        try:
-            result = build(self)
-        finally:
-            if callback:
-                library.kiwami_scene_set_progress(self, None, None)
-        if raised:
-            raise raised[0]
-        check(result, self._device)
+        with PlainQuery(self._device) as query:
+            try:
+                result = build(self)
+            finally:
+                if callback:
+                    library.kiwami_scene_set_progress(self, None, None)
+            if raised:
+                raise raised[0]
+            query.check(result)
         self._changed = False
 
     def save(self, path):

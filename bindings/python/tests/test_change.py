@@ -9,7 +9,6 @@ import kiwami
 UP = [0, 0, 1]
 
 
-@pytest.mark.feature("moving vertices")
 def test_moved_vertices_are_hit_after_a_refit(sphere, random):
     vertices, faces = sphere
     scene = kiwami.Scene(vertices, faces)

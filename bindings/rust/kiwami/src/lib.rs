@@ -17,13 +17,24 @@
 //! A [`SceneBuilder`] may change and cannot be traced; a [`Scene`] is committed, never changes, and
 //! can be traced from any number of threads.
 
+mod builder;
+mod callback;
+mod descriptor;
 mod device;
 mod error;
+mod filter;
+mod geometry;
 mod progress;
 mod ray;
 mod scene;
+mod trace;
+mod user_geometry;
 
+pub use builder::{Quality, SceneBuilder};
 pub use device::{Device, DeviceOptions, Isa};
 pub use error::{Error, ErrorKind};
+pub use filter::{Answer, Candidate, Filtered};
+pub use geometry::{Instance, MovingMesh};
 pub use ray::{Hit, Ray, INVALID_ID};
-pub use scene::{MultiHits, Quality, Scene, SceneBuilder};
+pub use scene::{MultiHits, Scene};
+pub use user_geometry::{Bounds, Intersection, UserGeometry, UserHit};

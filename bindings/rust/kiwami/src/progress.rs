@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-//! A closure as the progress callback of a commit. A panic may not cross C: it is kept, and becomes
-//! an error of the call.
+//! A closure as the progress callback of a commit.
+use crate::callback::{error_of, message_of};
 use crate::error::Error;
 use kiwami_sys as sys;
-use std::any::Any;
 use std::ffi::c_void;
 use std::ops::ControlFlow;
 use std::panic::{catch_unwind, AssertUnwindSafe};
@@ -11,7 +10,7 @@ use std::ptr::null_mut;
 
 struct Report<F> {
     function: F,
-    panic: Option<Box<dyn Any + Send>>,
+    panic: Option<String>,
 }
 
 /// The library calls it from any of its threads, never by two at a time.
@@ -28,18 +27,10 @@ where
         Ok(ControlFlow::Continue(())) => 0,
         Ok(ControlFlow::Break(())) => 1,
         Err(payload) => {
-            report.panic = Some(payload);
+            report.panic = Some(message_of(payload));
             1
         }
     }
-}
-
-fn sentence_of(payload: &(dyn Any + Send)) -> String {
-    let text = payload
-        .downcast_ref::<&str>()
-        .copied()
-        .or_else(|| payload.downcast_ref::<String>().map(String::as_str));
-    format!("the progress function panicked: {}", text.unwrap_or("no message"))
 }
 
 /// Runs `build` with the function told how far it is; its result is that of `build`, unless the
@@ -62,7 +53,7 @@ where
     let result = build();
     sys::kiwami_scene_set_progress(scene, None, null_mut());
     match state.panic {
-        Some(payload) => Err(Error::new(sys::KIWAMI_ERROR_CALLBACK, sentence_of(&*payload))),
+        Some(message) => Err(error_of("progress function", &message)),
         None => result,
     }
 }

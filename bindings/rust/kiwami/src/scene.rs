@@ -1,28 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
+use crate::builder::SceneBuilder;
+use crate::descriptor::{defaults, invalid};
 use crate::device::Device;
 use crate::error::Error;
-use crate::progress::with_progress;
+use crate::filter::{Answer, Candidate, Filtered};
+use crate::geometry::Attached;
 use crate::ray::{Hit, Ray};
+use crate::trace::Trace;
 use kiwami_sys as sys;
+use std::collections::HashMap;
 use std::ffi::CString;
 use std::mem::{size_of, MaybeUninit};
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::ptr::{null, null_mut};
 
-/// Named points of the pipeline that builds the tree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Quality {
-    Balanced = sys::KIWAMI_QUALITY_BALANCED,
-    Fast = sys::KIWAMI_QUALITY_FAST,
-    Best = sys::KIWAMI_QUALITY_BEST,
+/// One reference to a scene of the C interface, and what is attached to it by number.
+pub(crate) struct Object {
+    pub(crate) device: Device,
+    pub(crate) scene: *mut sys::kiwami_scene,
+    pub(crate) attached: HashMap<u32, Attached>,
 }
 
-/// One reference to a scene of the C interface.
-struct Object {
-    device: Device,
-    scene: *mut sys::kiwami_scene,
+impl Object {
+    /// Takes over the reference to the scene.
+    pub(crate) fn new(device: &Device, scene: *mut sys::kiwami_scene) -> Self {
+        Self { device: device.clone(), scene, attached: HashMap::new() }
+    }
 }
 
 // SAFETY: scene.h: changes come from one thread at a time (they take &mut), traces of a committed
@@ -34,103 +37,6 @@ impl Drop for Object {
     fn drop(&mut self) {
         // SAFETY: this reference is self's own.
         unsafe { sys::kiwami_scene_release(self.scene) };
-    }
-}
-
-/// A scene that is being put together. [`SceneBuilder::commit`] makes it one that can be traced.
-pub struct SceneBuilder {
-    object: Object,
-}
-
-impl SceneBuilder {
-    pub fn new(device: &Device) -> Result<Self, Error> {
-        let mut scene = null_mut();
-        // SAFETY: the device lives.
-        device.check(unsafe { sys::kiwami_scene_create(device.object, &mut scene) })?;
-        Ok(Self { object: Object { device: device.clone(), scene } })
-    }
-
-    /// Adds a mesh, copied, and returns the number that hits report as geometry_id.
-    pub fn add_mesh(
-        &mut self,
-        vertices: &[[f32; 3]],
-        triangles: &[[u32; 3]],
-    ) -> Result<u32, Error> {
-        self.add_masked_mesh(vertices, triangles, !0)
-    }
-
-    /// The same; only a ray with (ray.mask & mask) != 0 meets it.
-    pub fn add_masked_mesh(
-        &mut self,
-        vertices: &[[f32; 3]],
-        triangles: &[[u32; 3]],
-        mask: u32,
-    ) -> Result<u32, Error> {
-        let device = &self.object.device;
-        let mut desc = MaybeUninit::<sys::kiwami_triangle_mesh_desc>::uninit();
-        let mut geometry = null_mut();
-        let mut geometry_id = 0;
-        // SAFETY: the init function fills the descriptor; the slices outlive the call, which copies
-        // them; the scene takes its own reference to the geometry.
-        unsafe {
-            device.check(sys::kiwami_triangle_mesh_desc_init(
-                desc.as_mut_ptr(),
-                size_of::<sys::kiwami_triangle_mesh_desc>(),
-            ))?;
-            let mut desc = desc.assume_init();
-            desc.vertices = vertices.as_ptr().cast();
-            desc.vertex_count = vertices.len() as u64;
-            desc.indices = triangles.as_ptr().cast();
-            desc.triangle_count = triangles.len() as u64;
-            desc.mask = mask;
-            device.check(sys::kiwami_triangle_mesh_create(device.object, &desc, &mut geometry))?;
-            let result = sys::kiwami_scene_attach(self.object.scene, geometry, &mut geometry_id);
-            let attached = device.check(result);
-            sys::kiwami_geometry_release(geometry);
-            attached?;
-        }
-        Ok(geometry_id)
-    }
-
-    /// Removes a mesh; its number becomes free.
-    pub fn remove(&mut self, geometry_id: u32) -> Result<(), Error> {
-        // SAFETY: the scene lives.
-        let result = unsafe { sys::kiwami_scene_detach(self.object.scene, geometry_id) };
-        self.object.device.check(result)
-    }
-
-    /// Sets one of `kiwami_sys::KIWAMI_PARAMETER_*`.
-    pub fn set_parameter(&mut self, parameter: u32, value: f64) -> Result<(), Error> {
-        // SAFETY: the scene lives.
-        let result =
-            unsafe { sys::kiwami_scene_set_parameter(self.object.scene, parameter, value) };
-        self.object.device.check(result)
-    }
-
-    pub fn set_quality(&mut self, quality: Quality) -> Result<(), Error> {
-        self.set_parameter(sys::KIWAMI_PARAMETER_QUALITY, f64::from(quality as u32))
-    }
-
-    /// Builds the acceleration structure. On error the builder is lost, and the error says why.
-    pub fn commit(self) -> Result<Scene, Error> {
-        // SAFETY: the scene lives, and nothing else can reach it.
-        self.object.device.check(unsafe { sys::kiwami_scene_commit(self.object.scene) })?;
-        Ok(Scene { object: self.object })
-    }
-
-    /// The same, and tells `progress` how far it is: a fraction from 0 to 1, which never falls, from
-    /// any thread, never from two at a time. Where it breaks, the commit ends with
-    /// `ErrorKind::Cancelled`; where it panics, with `ErrorKind::Callback` and the message.
-    pub fn commit_with_progress<F>(self, progress: F) -> Result<Scene, Error>
-    where
-        F: FnMut(f64) -> ControlFlow<()> + Send,
-    {
-        let Object { device, scene } = &self.object;
-        // SAFETY: the scene lives, and nothing else can reach it.
-        unsafe {
-            with_progress(*scene, progress, || device.check(sys::kiwami_scene_commit(*scene)))?;
-        }
-        Ok(Scene { object: self.object })
     }
 }
 
@@ -151,7 +57,7 @@ impl MultiHits {
 
 /// A committed scene: it never changes, and any number of threads may trace it at once.
 pub struct Scene {
-    object: Object,
+    pub(crate) object: Object,
 }
 
 impl Scene {
@@ -167,14 +73,11 @@ impl Scene {
     /// Saves the scene; a file of that name stays whole until all is written.
     pub fn save(&self, path: &Path) -> Result<(), Error> {
         let path = c_path(path)?;
-        let mut desc = MaybeUninit::<sys::kiwami_save_desc>::uninit();
-        // SAFETY: the init function fills the descriptor; path outlives the call.
-        self.object.device.check(unsafe {
-            sys::kiwami_save_desc_init(desc.as_mut_ptr(), size_of::<sys::kiwami_save_desc>());
-            let mut desc = desc.assume_init();
-            desc.path = path.as_ptr();
-            sys::kiwami_scene_save(self.object.scene, &desc, null_mut())
-        })
+        let mut desc = defaults(sys::kiwami_save_desc_init);
+        desc.path = path.as_ptr();
+        // SAFETY: the scene lives, and path outlives the call.
+        let result = unsafe { sys::kiwami_scene_save(self.object.scene, &desc, null_mut()) };
+        self.object.device.check(result)
     }
 
     /// Loads a scene that `save` wrote, by copy, checking every byte.
@@ -190,16 +93,12 @@ impl Scene {
     /// must be those that `save` wrote.
     pub unsafe fn load_with(device: &Device, path: &Path, flags: u32) -> Result<Self, Error> {
         let path = c_path(path)?;
-        let mut desc = MaybeUninit::<sys::kiwami_load_desc>::uninit();
+        let mut desc = defaults(sys::kiwami_load_desc_init);
         let mut scene = null_mut();
-        device.check({
-            sys::kiwami_load_desc_init(desc.as_mut_ptr(), size_of::<sys::kiwami_load_desc>());
-            let mut desc = desc.assume_init();
-            desc.path = path.as_ptr();
-            desc.flags = flags;
-            sys::kiwami_scene_load(device.object, &desc, &mut scene)
-        })?;
-        Ok(Self { object: Object { device: device.clone(), scene } })
+        desc.path = path.as_ptr();
+        desc.flags = flags;
+        device.check(sys::kiwami_scene_load(device.object, &desc, &mut scene))?;
+        Ok(Self { object: Object::new(device, scene) })
     }
 
     /// What the acceleration structure is made of.
@@ -212,103 +111,57 @@ impl Scene {
         Ok(info)
     }
 
+    pub(crate) fn trace(&self, query: *const sys::kiwami_query) -> Trace<'_> {
+        Trace { device: &self.object.device, scene: self.object.scene, query }
+    }
+
     /// The closest hit of each ray.
     pub fn closest_hit(&self, rays: &[Ray]) -> Result<Vec<Hit>, Error> {
-        let mut hits = vec![Hit::MISS; rays.len()];
-        self.closest_hit_into(rays, &mut hits)?;
-        Ok(hits)
+        self.trace(null()).closest_hit(rays)
     }
 
     /// The same, into hits, of which there must be as many as rays.
     pub fn closest_hit_into(&self, rays: &[Ray], hits: &mut [Hit]) -> Result<(), Error> {
-        assert_eq!(rays.len(), hits.len(), "as many hits as rays");
-        // SAFETY: Ray and Hit are laid out as the C structs; the counts are those of the slices.
-        self.object.device.check(unsafe {
-            sys::kiwami_closest_hit(
-                self.object.scene,
-                rays.as_ptr().cast(),
-                0,
-                hits.as_mut_ptr().cast(),
-                0,
-                rays.len(),
-                null(),
-            )
-        })
+        self.trace(null()).closest_hit_into(rays, hits)
     }
 
     /// Whether each ray has a hit.
     pub fn any_hit(&self, rays: &[Ray]) -> Result<Vec<bool>, Error> {
-        let mut occluded = vec![false; rays.len()];
-        // SAFETY: the library writes 0 or 1, which are the values of bool.
-        self.object.device.check(unsafe {
-            sys::kiwami_any_hit(
-                self.object.scene,
-                rays.as_ptr().cast(),
-                0,
-                occluded.as_mut_ptr().cast(),
-                0,
-                rays.len(),
-                null(),
-            )
-        })?;
-        Ok(occluded)
+        self.trace(null()).any_hit(rays)
     }
 
     /// The nearest max_hits hits of each ray, by rising distance; 0 stands for all.
     pub fn multi_hit(&self, rays: &[Ray], max_hits: u32) -> Result<MultiHits, Error> {
-        let mut found =
-            MultiHits { offsets: vec![0; rays.len() + 1], hits: vec![Hit::MISS; rays.len()] };
-        loop {
-            // SAFETY: as above; hits has room for as many as it says.
-            let result = unsafe {
-                sys::kiwami_multi_hit(
-                    self.object.scene,
-                    rays.as_ptr().cast(),
-                    0,
-                    rays.len(),
-                    max_hits,
-                    found.hits.as_mut_ptr().cast(),
-                    found.hits.len() as u64,
-                    found.offsets.as_mut_ptr(),
-                    null(),
-                )
-            };
-            let is_complete = result != sys::KIWAMI_ERROR_CAPACITY;
-            if is_complete {
-                self.object.device.check(result)?;
-            }
-            found.hits.resize(found.offsets[rays.len()] as usize, Hit::MISS);
-            if is_complete {
-                return Ok(found);
-            }
-        }
+        self.trace(null()).multi_hit(rays, max_hits)
     }
 
     /// How many hits each ray has.
     pub fn count_hits(&self, rays: &[Ray]) -> Result<Vec<u32>, Error> {
-        let mut counts = vec![0; rays.len()];
-        // SAFETY: as above.
-        self.object.device.check(unsafe {
-            sys::kiwami_count_hits(
-                self.object.scene,
-                rays.as_ptr().cast(),
-                0,
-                counts.as_mut_ptr(),
-                0,
-                rays.len(),
-                null(),
-            )
-        })?;
-        Ok(counts)
+        self.trace(null()).count_hits(rays)
+    }
+
+    /// The same calls, with a filter that decides which hits count. Several threads ask it at once.
+    ///
+    /// ```
+    /// # fn shown(scene: &kiwami::Scene, rays: &[kiwami::Ray]) -> Result<(), kiwami::Error> {
+    /// use kiwami::Answer;
+    /// let even = scene.filtered(|candidate| match candidate.hit().primitive_id % 2 {
+    ///     0 => Answer::Accept,
+    ///     _ => Answer::Reject,
+    /// });
+    /// let hits = even.closest_hit(rays)?;
+    /// # Ok(()) }
+    /// ```
+    pub fn filtered<F>(&self, filter: F) -> Filtered<'_, F>
+    where
+        F: Fn(&Candidate) -> Answer + Sync,
+    {
+        Filtered::new(self, filter)
     }
 }
 
 /// A path for C, which ends at the first 0.
 fn c_path(path: &Path) -> Result<CString, Error> {
-    CString::new(path.to_string_lossy().as_bytes()).map_err(|_| {
-        Error::new(
-            sys::KIWAMI_ERROR_INVALID_ARGUMENT,
-            format!("path is {path:?}, expected one without a 0 in it"),
-        )
-    })
+    CString::new(path.to_string_lossy().as_bytes())
+        .map_err(|_| invalid(format!("path is {path:?}, expected one without a 0 in it")))
 }

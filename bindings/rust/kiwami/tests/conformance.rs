@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 //! The answers that every binding must give, to the bit.
-use std::io::Write;
-use std::ops::ControlFlow;
+mod common;
 
-use kiwami::{Device, DeviceOptions, ErrorKind, Hit, Isa, Ray, Scene, SceneBuilder};
+use common::{note, one_triangle, CORNERS};
+use kiwami::{
+    Device, DeviceOptions, ErrorKind, Hit, Instance, Isa, MovingMesh, Ray, Scene, SceneBuilder,
+};
+use std::collections::HashMap;
+use std::sync::Arc;
 
 const VECTORS: &str = include_str!("../../../conformance/vectors.txt");
-
-/// Notes that a feature was found right, for the table of the documents.
-fn note(feature: &str) {
-    if let Ok(path) = std::env::var("KIWAMI_FEATURES") {
-        let mut file = std::fs::OpenOptions::new().create(true).append(true).open(path).unwrap();
-        writeln!(file, "{feature}").unwrap();
-    }
-}
+const FILES: [(&str, &[&str]); 5] = [
+    (VECTORS, &["closest hit", "any hit", "multi hit", "counts"]),
+    (include_str!("../../../conformance/shapes.txt"), &["spheres, discs, curves"]),
+    (include_str!("../../../conformance/moving_meshes.txt"), &["moving meshes"]),
+    (include_str!("../../../conformance/instances.txt"), &["instances"]),
+    (include_str!("../../../conformance/changes.txt"), &["changes, refit"]),
+];
 
 struct Words<'a>(std::str::SplitAsciiWhitespace<'a>);
 
@@ -30,8 +33,14 @@ impl<'a> Words<'a> {
     fn float(&mut self) -> f32 {
         f32::from_bits(self.int())
     }
-    fn floats(&mut self) -> [f32; 3] {
-        [self.float(), self.float(), self.float()]
+    fn floats<const N: usize>(&mut self) -> [f32; N] {
+        std::array::from_fn(|_| self.float())
+    }
+    fn rows<const N: usize>(&mut self, count: u32) -> Vec<[f32; N]> {
+        (0..count).map(|_| self.floats()).collect()
+    }
+    fn triangles(&mut self, count: u32) -> Vec<[u32; 3]> {
+        (0..count).map(|_| std::array::from_fn(|_| self.int())).collect()
     }
     fn ray(&mut self) -> Ray {
         Ray {
@@ -103,56 +112,151 @@ fn check_file(words: &mut Words, scene: &Scene, rays: &[Ray]) {
     note("files");
 }
 
-/// One scene; returns how many answers were compared.
-fn check_scene(words: &mut Words, device: &Device) -> usize {
-    let mut builder = SceneBuilder::new(device).unwrap();
-    assert!(!words.word().is_empty());
-    let mut word = words.word();
-    while word == "mesh" {
-        let (mask, vertex_count, triangle_count) = (words.int(), words.int(), words.int());
-        let vertices: Vec<_> = (0..vertex_count).map(|_| words.floats()).collect();
-        let triangles: Vec<[u32; 3]> =
-            (0..triangle_count).map(|_| [words.int(), words.int(), words.int()]).collect();
-        builder.add_masked_mesh(&vertices, &triangles, mask).unwrap();
-        word = words.word();
+/// Adds a geometry of this kind, or says that it is none.
+fn add_geometry(
+    kind: &str,
+    words: &mut Words,
+    builder: &mut SceneBuilder,
+    scenes: &HashMap<String, Arc<Scene>>,
+) -> bool {
+    let mut header = |count: usize| -> Vec<u32> { (0..count).map(|_| words.int()).collect() };
+    let added = match kind {
+        "mesh" => {
+            let head = header(3);
+            let (vertices, triangles) = (words.rows(head[1]), words.triangles(head[2]));
+            builder.add_masked_mesh(&vertices, &triangles, head[0])
+        }
+        "moving_mesh" => {
+            let head = header(6);
+            let (vertices, triangles) = (words.rows(head[1] * head[4]), words.triangles(head[5]));
+            builder.add_moving_mesh(&MovingMesh {
+                time_begin: f32::from_bits(head[2]),
+                time_end: f32::from_bits(head[3]),
+                mask: head[0],
+                ..MovingMesh::new(&vertices, head[1], &triangles)
+            })
+        }
+        "spheres" => {
+            let head = header(2);
+            builder.add_spheres(&words.rows(head[1]), head[0])
+        }
+        "discs" => {
+            let head = header(2);
+            let (points, normals) = (words.rows(head[1]), words.rows(head[1]));
+            builder.add_discs(&points, &normals, head[0])
+        }
+        "curves" => {
+            let head = header(3);
+            let points = words.rows(head[1]);
+            let segments: Vec<_> = (0..head[2]).map(|_| words.int()).collect();
+            builder.add_curves(&points, &segments, head[0])
+        }
+        "instances" => {
+            let head = header(3);
+            let shown: Vec<_> = (0..head[1]).map(|_| scenes[words.word()].clone()).collect();
+            let instances: Vec<_> = (0..head[2])
+                .map(|_| Instance {
+                    scene: words.int(),
+                    mask: words.int(),
+                    transform: std::array::from_fn(|_| words.floats()),
+                })
+                .collect();
+            builder.add_instances(&shown, &instances, head[0])
+        }
+        _ => return false,
+    };
+    added.unwrap();
+    true
+}
+
+/// Changes the scene by one statement, or says that it does not change it.
+fn change(statement: &str, words: &mut Words, builder: &mut SceneBuilder) -> bool {
+    match statement {
+        "vertices" => {
+            let (geometry_id, count) = (words.int(), words.int());
+            builder.update_vertices(geometry_id, &words.rows(count)).unwrap();
+        }
+        "enable" => {
+            let geometry_id = words.int();
+            builder.enable(geometry_id, words.int() != 0).unwrap();
+        }
+        "remove" => builder.remove(words.int()).unwrap(),
+        _ => return false,
     }
-    assert_eq!(word, "rays");
-    let count = words.int();
-    let rays: Vec<_> = (0..count).map(|_| words.ray()).collect();
-    let scene = builder.commit().unwrap();
-    assert_eq!(words.word(), "closest_hit");
-    for hit in scene.closest_hit(&rays).unwrap() {
-        assert_eq!(bits_of(&hit), words.hit());
+    true
+}
+
+/// Compares one kind of answer.
+fn compare(statement: &str, words: &mut Words, scene: &Scene, rays: &[Ray]) {
+    match statement {
+        "closest_hit" => {
+            for hit in scene.closest_hit(rays).unwrap() {
+                assert_eq!(bits_of(&hit), words.hit());
+            }
+        }
+        "any_hit" => {
+            for occluded in scene.any_hit(rays).unwrap() {
+                assert_eq!(u32::from(occluded), words.int());
+            }
+        }
+        "multi_hit" => check_multi_hit(words, scene, rays),
+        "file" => check_file(words, scene, rays),
+        _ => panic!("the vectors have {statement:?}"),
     }
-    assert_eq!(words.word(), "any_hit");
-    for occluded in scene.any_hit(&rays).unwrap() {
-        assert_eq!(u32::from(occluded), words.int());
+}
+
+/// One scene; returns how many rays were compared.
+fn check_scene(
+    words: &mut Words,
+    device: &Device,
+    scenes: &mut HashMap<String, Arc<Scene>>,
+) -> usize {
+    let name = words.word();
+    let mut builder = Some(SceneBuilder::new(device).unwrap());
+    let mut scene: Option<Scene> = None;
+    let (mut rays, mut compared) = (Vec::new(), 0);
+    loop {
+        let statement = words.word();
+        if statement == "end" {
+            scenes.insert(name.to_string(), Arc::new(scene.unwrap()));
+            return compared;
+        }
+        if statement == "rays" {
+            rays = (0..words.int()).map(|_| words.ray()).collect();
+            compared += rays.len();
+        } else if statement == "commit" {
+            scene = Some(builder.take().unwrap().commit().unwrap());
+        } else if statement == "refit" {
+            scene = Some(builder.take().unwrap().refit().unwrap());
+        } else if matches!(statement, "closest_hit" | "any_hit" | "multi_hit" | "file") {
+            compare(statement, words, scene.as_ref().unwrap(), &rays);
+        } else {
+            let mut edited = builder.take().unwrap_or_else(|| scene.take().unwrap().edit());
+            assert!(
+                add_geometry(statement, words, &mut edited, scenes)
+                    || change(statement, words, &mut edited),
+                "the vectors have {statement:?}"
+            );
+            builder = Some(edited);
+        }
     }
-    word = words.word();
-    while word == "multi_hit" {
-        check_multi_hit(words, &scene, &rays);
-        word = words.word();
-    }
-    if word == "file" {
-        check_file(words, &scene, &rays);
-        word = words.word();
-    }
-    assert_eq!(word, "end");
-    ["closest hit", "any hit", "multi hit", "counts"].map(note);
-    rays.len()
 }
 
 #[test]
 fn answers_are_the_same_to_the_bit() {
-    for isa in [Isa::Auto, Isa::Scalar] {
-        let device = Device::with_options(DeviceOptions { isa, ..Default::default() }).unwrap();
-        let mut words = Words(VECTORS.split_ascii_whitespace());
-        assert_eq!((words.word(), words.word()), ("kiwami-conformance", "1"));
-        let mut compared = 0;
-        while words.word() == "scene" {
-            compared += check_scene(&mut words, &device);
+    for (text, features) in FILES {
+        for isa in [Isa::Auto, Isa::Scalar] {
+            let options = DeviceOptions { isa, validate: true, ..Default::default() };
+            let device = Device::with_options(options).unwrap();
+            let mut words = Words(text.split_ascii_whitespace());
+            assert_eq!((words.word(), words.word()), ("kiwami-conformance", "1"));
+            let (mut compared, mut scenes) = (0, HashMap::new());
+            while words.0.next() == Some("scene") {
+                compared += check_scene(&mut words, &device, &mut scenes);
+            }
+            assert!(compared > 100);
         }
-        assert!(compared > 100);
+        features.iter().for_each(|feature| note(feature));
     }
 }
 
@@ -166,9 +270,8 @@ fn expected_error(name: &str) -> (i32, &'static str) {
 fn errors_are_the_same() {
     let device = Device::new().unwrap();
     let mut builder = SceneBuilder::new(&device).unwrap();
-    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let errors = [
-        ("index_beyond_vertices", builder.add_mesh(&corners, &[[0, 1, 3]]).unwrap_err()),
+        ("index_beyond_vertices", builder.add_mesh(&CORNERS, &[[0, 1, 3]]).unwrap_err()),
         ("unknown_geometry", builder.remove(5).unwrap_err()),
         (
             "parameter_out_of_bounds",
@@ -185,11 +288,7 @@ fn errors_are_the_same() {
 #[test]
 fn a_scene_is_traced_by_many_threads() {
     let device = Device::new().unwrap();
-    let mut builder = SceneBuilder::new(&device).unwrap();
-    builder
-        .add_mesh(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])
-        .unwrap();
-    let scene = builder.commit().unwrap();
+    let scene = one_triangle(&device).commit().unwrap();
     let rays: Vec<_> =
         (0..100).map(|i| Ray::new([i as f32 / 50.0, 0.1, -1.0], [0.0, 0.0, 1.0])).collect();
     let expected = scene.closest_hit(&rays).unwrap();
@@ -199,49 +298,6 @@ fn a_scene_is_traced_by_many_threads() {
         }
     });
     assert!(scene.edit().commit().is_ok());
-}
-
-fn one_triangle(device: &Device) -> SceneBuilder {
-    let mut builder = SceneBuilder::new(device).unwrap();
-    builder
-        .add_mesh(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])
-        .unwrap();
-    builder
-}
-
-#[test]
-fn progress_is_told_and_may_cancel_or_panic() {
-    let device = Device::new().unwrap();
-    let mut fractions = Vec::new();
-    let scene = one_triangle(&device)
-        .commit_with_progress(|fraction| {
-            fractions.push(fraction);
-            ControlFlow::Continue(())
-        })
-        .unwrap();
-    assert_eq!((fractions.first(), fractions.last()), (Some(&0.0), Some(&1.0)));
-    assert!(fractions.windows(2).all(|pair| pair[0] <= pair[1]));
-    // The closure is gone: a later commit must not call it.
-    assert!(scene.edit().commit().is_ok());
-
-    let error = one_triangle(&device)
-        .commit_with_progress(|_| ControlFlow::Break(()))
-        .err()
-        .unwrap();
-    assert_eq!(error.kind(), ErrorKind::Cancelled);
-
-    let mut calls = 0;
-    let error = one_triangle(&device)
-        .commit_with_progress(|_| {
-            calls += 1;
-            panic!("no more")
-        })
-        .err()
-        .unwrap();
-    assert_eq!(error.kind(), ErrorKind::Callback);
-    assert_eq!(error.to_string(), "the progress function panicked: no more");
-    assert_eq!(calls, 1);
-    note("progress callback");
 }
 
 #[test]

@@ -16,38 +16,35 @@ import java.nio.charset.StandardCharsets;
 public final class Scene implements AutoCloseable {
   private final Pointer device;
   private final Pointer object;
+  private final Geometries geometries;
   private final Cleaner.Cleanable cleanable;
   private volatile boolean isClosed;
 
   public Scene(Device device) {
-    this.device = device.object();
-    Memory made = new Memory(com.sun.jna.Native.POINTER_SIZE);
-    KiwamiException.check(Native.kiwami_scene_create(this.device, made), this.device);
+    this(device.object(), create(device.object()));
     Reference.reachabilityFence(device);
-    Native.kiwami_device_retain(this.device);
-    object = made.getPointer(0);
-    Pointer ownedScene = object;
-    Pointer ownedDevice = this.device;
-    cleanable =
-        Device.CLEANER.register(
-            this,
-            () -> {
-              Native.kiwami_scene_release(ownedScene);
-              Native.kiwami_device_release(ownedDevice);
-            });
   }
 
   private Scene(Pointer device, Pointer object) {
     this.device = device;
     this.object = object;
+    geometries = new Geometries(device);
     Native.kiwami_device_retain(device);
+    Geometries owned = geometries;
     cleanable =
         Device.CLEANER.register(
             this,
             () -> {
+              owned.release();
               Native.kiwami_scene_release(object);
               Native.kiwami_device_release(device);
             });
+  }
+
+  private static Pointer create(Pointer device) {
+    Memory made = new Memory(com.sun.jna.Native.POINTER_SIZE);
+    KiwamiException.check(Native.kiwami_scene_create(device, made), device);
+    return made.getPointer(0);
   }
 
   private static Memory text(String value) {
@@ -120,18 +117,6 @@ public final class Scene implements AutoCloseable {
     return buffer.capacity() == 0 ? new Memory(1) : com.sun.jna.Native.getDirectBufferPointer(buffer);
   }
 
-  private static Memory copy(float[] values) {
-    Memory memory = new Memory(Math.max(4L * values.length, 1));
-    memory.write(0, values, 0, values.length);
-    return memory;
-  }
-
-  private static Memory copy(int[] values) {
-    Memory memory = new Memory(Math.max(4L * values.length, 1));
-    memory.write(0, values, 0, values.length);
-    return memory;
-  }
-
   /** Adds a mesh that all rays meet. */
   public int addMesh(float[] vertices, int[] triangles) {
     return addMesh(vertices, triangles, -1);
@@ -145,37 +130,90 @@ public final class Scene implements AutoCloseable {
    * @param mask only a ray with (ray's mask & mask) != 0 meets it
    */
   public int addMesh(float[] vertices, int[] triangles, int mask) {
-    if (vertices.length % 3 != 0 || triangles.length % 3 != 0) {
-      throw new IllegalArgumentException(
-          "vertices has " + vertices.length + " and triangles " + triangles.length
-              + " numbers, expected multiples of 3");
-    }
-    Memory positions = copy(vertices);
-    Memory indices = copy(triangles);
-    Memory desc = new Memory(Native.TriangleMeshDesc.STRUCT_BYTES);
-    check(Native.kiwami_triangle_mesh_desc_init(desc, desc.size()));
-    desc.setPointer(Native.TriangleMeshDesc.VERTICES, positions);
-    desc.setLong(Native.TriangleMeshDesc.VERTEX_COUNT, vertices.length / 3);
-    desc.setPointer(Native.TriangleMeshDesc.INDICES, indices);
-    desc.setLong(Native.TriangleMeshDesc.TRIANGLE_COUNT, triangles.length / 3);
-    desc.setInt(Native.TriangleMeshDesc.MASK, mask);
-    Memory made = new Memory(com.sun.jna.Native.POINTER_SIZE);
-    check(Native.kiwami_triangle_mesh_create(device, desc, made));
-    Pointer geometry = made.getPointer(0);
-    Memory number = new Memory(4);
-    try {
-      check(Native.kiwami_scene_attach(object(), geometry, number));
-    } finally {
-      Native.kiwami_geometry_release(geometry);
-    }
-    Reference.reachabilityFence(positions);
-    Reference.reachabilityFence(indices);
-    return number.getInt(0);
+    int number = geometries.addMesh(object(), vertices, triangles, mask);
+    Reference.reachabilityFence(this);
+    return number;
   }
 
-  /** Removes a mesh; its number becomes free. */
+  /**
+   * Adds a mesh whose vertices move, copied; returns its number as addMesh does, as all of these.
+   *
+   * @param vertices those of all steps, one step after the other
+   * @param timeBegin when the mesh is where its first step says
+   * @param timeEnd when the mesh is where its last step says
+   */
+  public int addMovingMesh(
+      float[] vertices, int stepCount, int[] triangles, float timeBegin, float timeEnd, int mask) {
+    int number =
+        geometries.addMovingMesh(
+            object(), vertices, stepCount, triangles, timeBegin, timeEnd, mask);
+    Reference.reachabilityFence(this);
+    return number;
+  }
+
+  /** Adds spheres: x, y, z and radius. */
+  public int addSpheres(float[] points, int mask) {
+    int number = geometries.addSpheres(object(), points, mask);
+    Reference.reachabilityFence(this);
+    return number;
+  }
+
+  /** Adds flat discs: x, y, z and radius, and a normal of three numbers each. */
+  public int addDiscs(float[] points, float[] normals, int mask) {
+    int number = geometries.addDiscs(object(), points, normals, mask);
+    Reference.reachabilityFence(this);
+    return number;
+  }
+
+  /** Adds round curve segments: segment i joins the points segments[i] and segments[i] + 1. */
+  public int addCurves(float[] points, int[] segments, int mask) {
+    int number = geometries.addCurves(object(), points, segments, mask);
+    Reference.reachabilityFence(this);
+    return number;
+  }
+
+  /** Adds instances of one scene, which all rays enter. */
+  public int addInstances(Scene scene, float[] transforms) {
+    return addInstances(new Scene[] {scene}, transforms, null, null, -1);
+  }
+
+  /**
+   * Adds instances of these scenes. A commit shows what they have committed by then, and may not
+   * overlap with theirs.
+   *
+   * @param transforms three rows of four numbers each, from the scene's space to this one's
+   * @param sceneIndices which of the scenes each shows; null: the first
+   * @param masks which rays enter each; null: all
+   */
+  public int addInstances(
+      Scene[] scenes, float[] transforms, int[] sceneIndices, int[] masks, int mask) {
+    Pointer[] shown = new Pointer[scenes.length];
+    for (int i = 0; i < shown.length; ++i) {
+      shown[i] = scenes[i].object();
+    }
+    int number =
+        geometries.addInstances(object(), shown, transforms, sceneIndices, masks, mask);
+    Reference.reachabilityFence(scenes);
+    Reference.reachabilityFence(this);
+    return number;
+  }
+
+  /** Gives a mesh other vertices, as many as it has; refit() or commit() shows them. */
+  public void updateVertices(int geometryId, float[] vertices) {
+    object();
+    geometries.updateVertices(geometryId, vertices);
+    Reference.reachabilityFence(this);
+  }
+
+  /** Leaves a geometry out, or takes it in again, under its number. */
+  public void enable(int geometryId, boolean isEnabled) {
+    check(Native.kiwami_scene_enable(object(), geometryId, isEnabled ? 1 : 0));
+  }
+
+  /** Removes a geometry; its number becomes free. */
   public void remove(int geometryId) {
-    check(Native.kiwami_scene_detach(object(), geometryId));
+    geometries.remove(object(), geometryId);
+    Reference.reachabilityFence(this);
   }
 
   /** Sets one of KIWAMI_PARAMETER_* of scene.h. */
@@ -186,6 +224,14 @@ public final class Scene implements AutoCloseable {
   /** Builds the acceleration structure of what the scene holds now. */
   public void commit() {
     check(Native.kiwami_scene_commit(object()));
+  }
+
+  /**
+   * As commit(), but keeps the tree where only vertices moved: quicker to make, and, the further
+   * they moved, slower to trace.
+   */
+  public void refit() {
+    check(Native.kiwami_scene_refit(object()));
   }
 
   /** The closest hit of each ray. */

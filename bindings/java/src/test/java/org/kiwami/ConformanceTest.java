@@ -12,16 +12,18 @@ import java.nio.file.Files;
 import java.nio.file.Path;
 import java.nio.file.Paths;
 import java.nio.file.StandardOpenOption;
+import java.util.HashMap;
 import java.util.List;
+import java.util.Map;
 import java.util.Scanner;
+import java.util.stream.IntStream;
 import org.junit.Test;
 
 /** The answers that every binding must give, to the bit. */
 public class ConformanceTest {
-  private static String vectors() throws IOException {
-    return new String(
-        Files.readAllBytes(Paths.get(System.getProperty("kiwami.vectors"))),
-        StandardCharsets.UTF_8);
+  private static String vectors(String name) throws IOException {
+    Path path = Paths.get(System.getProperty("kiwami.vectors")).resolveSibling(name + ".txt");
+    return new String(Files.readAllBytes(path), StandardCharsets.UTF_8);
   }
 
   /** Notes that features were found right, for the table of the documents. */
@@ -79,74 +81,199 @@ public class ConformanceTest {
     note("files");
   }
 
-  private static void readMesh(Scanner words, Scene scene) {
-    int mask = word(words);
-    float[] vertices = new float[3 * word(words)];
-    int[] triangles = new int[3 * word(words)];
-    for (int i = 0; i < vertices.length; ++i) {
-      vertices[i] = Float.intBitsToFloat(word(words));
-    }
-    for (int i = 0; i < triangles.length; ++i) {
-      triangles[i] = word(words);
-    }
-    scene.addMesh(vertices, triangles, mask);
+  private static int[] words(Scanner words, int count) {
+    return IntStream.range(0, count).map(i -> word(words)).toArray();
   }
 
-  private static int checkScene(Scanner words, Device device) throws IOException {
-    try (Scene scene = new Scene(device)) {
-      words.next();
-      String name = words.next();
-      for (; name.equals("mesh"); name = words.next()) {
-        readMesh(words, scene);
-      }
-      assertEquals("rays", name);
-      Rays rays = new Rays(word(words));
-      for (int i = 0; i < rays.count() * Native.Ray.STRUCT_BYTES; i += 4) {
-        rays.buffer().putInt(i, word(words));
-      }
-      scene.commit();
-      assertEquals("closest_hit", words.next());
-      Hits hits = scene.closestHit(rays);
-      for (int i = 0; i < rays.count(); ++i) {
-        assertHit(words, hits, i);
-      }
-      assertEquals("any_hit", words.next());
-      for (boolean occluded : scene.anyHit(rays)) {
-        assertEquals(word(words) == 1, occluded);
-      }
-      for (name = words.next(); name.equals("multi_hit"); name = words.next()) {
-        checkMultiHit(words, scene, rays);
-      }
-      if (name.equals("file")) {
-        checkFile(words, device, scene, rays);
-        name = words.next();
-      }
-      assertEquals("end", name);
-      note("closest hit", "any hit", "multi hit", "counts");
-      return rays.count();
+  private static float[] floats(Scanner words, int count) {
+    float[] values = new float[count];
+    for (int i = 0; i < count; ++i) {
+      values[i] = Float.intBitsToFloat(word(words));
     }
+    return values;
+  }
+
+  /** Adds a geometry of this kind, or says that it is none. */
+  private static boolean addGeometry(
+      String kind, Scanner words, Scene scene, Map<String, Scene> scenes) {
+    int[] head;
+    switch (kind) {
+      case "mesh":
+        head = words(words, 3);
+        scene.addMesh(floats(words, 3 * head[1]), words(words, 3 * head[2]), head[0]);
+        return true;
+      case "moving_mesh":
+        head = words(words, 6);
+        scene.addMovingMesh(
+            floats(words, 3 * head[1] * head[4]),
+            head[1],
+            words(words, 3 * head[5]),
+            Float.intBitsToFloat(head[2]),
+            Float.intBitsToFloat(head[3]),
+            head[0]);
+        return true;
+      case "spheres":
+        head = words(words, 2);
+        scene.addSpheres(floats(words, 4 * head[1]), head[0]);
+        return true;
+      case "discs":
+        head = words(words, 2);
+        scene.addDiscs(floats(words, 4 * head[1]), floats(words, 3 * head[1]), head[0]);
+        return true;
+      case "curves":
+        head = words(words, 3);
+        scene.addCurves(floats(words, 4 * head[1]), words(words, head[2]), head[0]);
+        return true;
+      case "instances":
+        addInstances(words, scene, scenes);
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  private static void addInstances(Scanner words, Scene scene, Map<String, Scene> scenes) {
+    int[] head = words(words, 3);
+    Scene[] shown = new Scene[head[1]];
+    for (int i = 0; i < shown.length; ++i) {
+      shown[i] = scenes.get(words.next());
+    }
+    int[] indices = new int[head[2]];
+    int[] masks = new int[head[2]];
+    float[] transforms = new float[12 * head[2]];
+    for (int i = 0; i < head[2]; ++i) {
+      indices[i] = word(words);
+      masks[i] = word(words);
+      System.arraycopy(floats(words, 12), 0, transforms, 12 * i, 12);
+    }
+    scene.addInstances(shown, transforms, indices, masks, head[0]);
+  }
+
+  /** Changes the scene by one statement, or says that it does not change it. */
+  private static boolean change(String statement, Scanner words, Scene scene) {
+    int geometryId;
+    switch (statement) {
+      case "commit":
+        scene.commit();
+        return true;
+      case "refit":
+        scene.refit();
+        return true;
+      case "vertices":
+        geometryId = word(words);
+        scene.updateVertices(geometryId, floats(words, 3 * word(words)));
+        return true;
+      case "enable":
+        geometryId = word(words);
+        scene.enable(geometryId, word(words) != 0);
+        return true;
+      case "remove":
+        scene.remove(word(words));
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  private static void compare(
+      String statement, Scanner words, Device device, Scene scene, Rays rays) throws IOException {
+    switch (statement) {
+      case "closest_hit":
+        Hits hits = scene.closestHit(rays);
+        for (int i = 0; i < rays.count(); ++i) {
+          assertHit(words, hits, i);
+        }
+        break;
+      case "any_hit":
+        for (boolean occluded : scene.anyHit(rays)) {
+          assertEquals(word(words) == 1, occluded);
+        }
+        break;
+      case "multi_hit":
+        checkMultiHit(words, scene, rays);
+        break;
+      case "file":
+        checkFile(words, device, scene, rays);
+        break;
+      default:
+        throw new AssertionError("the vectors have '" + statement + "'");
+    }
+  }
+
+  /** Returns how many rays were compared. */
+  private static int checkScene(Scanner words, Device device, Map<String, Scene> scenes)
+      throws IOException {
+    Scene scene = new Scene(device);
+    scenes.put(words.next(), scene);
+    Rays rays = new Rays(0);
+    int compared = 0;
+    for (String name = words.next(); !name.equals("end"); name = words.next()) {
+      if (name.equals("rays")) {
+        rays = new Rays(word(words));
+        for (int i = 0; i < rays.count() * Native.Ray.STRUCT_BYTES; i += 4) {
+          rays.buffer().putInt(i, word(words));
+        }
+        compared += rays.count();
+      } else if (!addGeometry(name, words, scene, scenes) && !change(name, words, scene)) {
+        compare(name, words, device, scene, rays);
+      }
+    }
+    return compared;
+  }
+
+  private static void checkFileOfVectors(String name, String... features) throws IOException {
+    for (Isa isa : new Isa[] {Isa.AUTO, Isa.SCALAR}) {
+      Map<String, Scene> scenes = new HashMap<>();
+      try (Device device = new Device(isa, 0, true);
+          Scanner words = new Scanner(vectors(name))) {
+        assertEquals("kiwami-conformance", words.next());
+        assertEquals("1", words.next());
+        int compared = 0;
+        while (words.hasNext() && words.next().equals("scene")) {
+          compared += checkScene(words, device, scenes);
+        }
+        assertTrue(compared > 100);
+        scenes.values().forEach(Scene::close);
+      }
+    }
+    note(features);
   }
 
   @Test
   public void answersAreTheSameToTheBit() throws IOException {
-    for (Isa isa : new Isa[] {Isa.AUTO, Isa.SCALAR}) {
-      try (Device device = new Device(isa, 0, true);
-          Scanner words = new Scanner(vectors())) {
-        assertEquals("kiwami-conformance", words.next());
-        assertEquals("1", words.next());
-        int compared = 0;
-        while (words.next().equals("scene")) {
-          compared += checkScene(words, device);
-        }
-        assertTrue(compared > 100);
-      }
+    checkFileOfVectors("vectors", "closest hit", "any hit", "multi hit", "counts");
+    checkFileOfVectors("shapes", "spheres, discs, curves");
+    checkFileOfVectors("moving_meshes", "moving meshes");
+    checkFileOfVectors("instances", "instances");
+    checkFileOfVectors("changes", "changes, refit");
+  }
+
+  @Test
+  public void geometriesOfWrongSizesAreExceptions() {
+    try (Device device = new Device();
+        Scene scene = new Scene(device);
+        Scene shown = new Scene(device)) {
+      assertThrows(
+          IllegalArgumentException.class, () -> scene.addDiscs(new float[8], new float[3], -1));
+      assertThrows(
+          IllegalArgumentException.class,
+          () -> scene.addMovingMesh(new float[9], 2, new int[0], 0, 1, -1));
+      assertThrows(
+          IllegalArgumentException.class,
+          () -> scene.addInstances(new Scene[] {shown}, new float[12], new int[2], null, -1));
+      assertThrows(KiwamiException.class, () -> scene.addInstances(shown, new float[12]));
+      assertThrows(IllegalArgumentException.class, () -> scene.updateVertices(0, new float[3]));
+      shown.commit();
+      float[] identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+      assertEquals(0, scene.addInstances(shown, identity));
+      scene.commit();
     }
   }
 
   private static void assertError(String name, Runnable call) throws IOException {
     KiwamiException error = assertThrows(KiwamiException.class, call::run);
     String line =
-        vectors().lines().filter(each -> each.startsWith("error " + name + " ")).findFirst().get();
+        vectors("vectors").lines().filter(each -> each.startsWith("error " + name + " ")).findFirst().get();
     assertEquals(line, "error " + name + " " + error.result() + " " + error.getMessage());
   }
 
