@@ -5,6 +5,7 @@ import numpy as np
 
 from .arrays import INVALID_ID
 from .device import Device
+from .rays import RayBatch
 from .scene import Scene
 
 
@@ -44,13 +45,23 @@ class RaycastingScene:
     def cast_rays(self, rays):
         """The closest hits: a dict of t_hit, geometry_ids, primitive_ids, primitive_uvs and
         primitive_normals (of length 1; 0 for misses)."""
-        hits = self.scene.closest(_rays(rays))
+        self.scene._prepare()
+        batch = RayBatch(_rays(rays))
+        count, shape = batch.count, batch.shape
+        t = np.empty(count, np.float32)
+        geometry_ids, primitive_ids = np.empty((2, count), np.uint32)
+        uvs, normals = np.empty((count, 2), np.float32), np.empty((count, 3), np.float32)
+        columns = {"t": t, "geometry_id": geometry_ids, "primitive_id": primitive_ids}
+        columns.update(zip(("u", "v"), uvs.T))
+        columns.update(zip(("normal_x", "normal_y", "normal_z"), normals.T))
+        batch.closest_columns(self.scene, columns)
+        _normalize(normals)
         return {
-            "t_hit": hits.t,
-            "geometry_ids": hits.geometry_id,
-            "primitive_ids": hits.primitive_id,
-            "primitive_uvs": _uvs(hits),
-            "primitive_normals": _unit(hits.normal),
+            "t_hit": t.reshape(shape),
+            "geometry_ids": geometry_ids.reshape(shape),
+            "primitive_ids": primitive_ids.reshape(shape),
+            "primitive_uvs": uvs.reshape(*shape, 2),
+            "primitive_normals": normals.reshape(*shape, 3),
         }
 
     def test_occlusions(self, rays, tnear=0.0, tfar=np.inf):
@@ -85,10 +96,22 @@ def _uvs(hits):
     )
 
 
-def _unit(normals):
-    """Normals of length 1. Lengths in double: the square of a float may be out of its range."""
-    normals = np.ascontiguousarray(normals)
-    x, y, z = (normals[..., axis].astype(np.float64) for axis in range(3))
-    length = np.sqrt(x * x + y * y + z * z)
-    inverse = np.divide(1.0, length, out=np.zeros_like(length), where=length > 0)
-    return (normals * inverse[..., None]).astype(np.float32)
+#: Rows that are normalised at once: what they need stays in the processor's caches.
+_BLOCK = 8192
+
+
+def _normalize(rows):
+    """Gives each row of three floats the length 1, where it lies; 0 stays 0. Lengths in double: the
+    square of a float may be out of its range, but no square of a double that was a float is."""
+    for first in range(0, len(rows), _BLOCK):
+        block = rows[first : first + _BLOCK]
+        exact = block.astype(np.float64)
+        x, y, z = exact.T
+        scale = x * x
+        scale += y * y
+        scale += z * z
+        np.maximum(scale, 1e-300, out=scale)  # below the square of any float but 0
+        np.sqrt(scale, out=scale)
+        np.divide(1.0, scale, out=scale)
+        exact *= scale[:, None]
+        block[:] = exact

@@ -23,7 +23,17 @@ class RayBatch:
     Holds every array that the library is about to read.
     """
 
-    def __init__(self, rays, directions, tmin, tmax, time, mask, cull, filter=None):
+    def __init__(
+        self,
+        rays,
+        directions=None,
+        tmin=0.0,
+        tmax=np.inf,
+        time=0.0,
+        mask=0xFFFFFFFF,
+        cull=None,
+        filter=None,
+    ):
         if cull not in _CULL:
             raise ValueError(f"cull is {cull!r}, expected None, 'back' or 'front'")
         self._filter = filter
@@ -96,6 +106,24 @@ class RayBatch:
                     query.address,
                 )
             query.check(result)
+
+    def closest_columns(self, scene, columns):
+        """The closest hits, each field of kiwami_hit that is named into a column of its own: arrays
+        (count,) of any stride. For rays whose fields lie apart."""
+        hits = descriptor(_native.kiwami_hit_fields, library.kiwami_hit_fields_init)
+        for name, column in columns.items():
+            field = getattr(hits, name)
+            field.data, field.stride = column.ctypes.data, column.strides[0]
+        with _query(scene, self._filter) as query:
+            query.check(
+                library.kiwami_closest_hit_fields(
+                    scene,
+                    ctypes.byref(self.fields),
+                    ctypes.byref(hits),
+                    self.count,
+                    query.address,
+                )
+            )
 
     def trace_several(self, scene, max_hits):
         """Several hits a ray: the hits and where those of each ray begin."""

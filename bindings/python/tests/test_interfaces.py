@@ -94,3 +94,19 @@ def test_lists_of_intersections(sphere, random):
     assert found["primitive_uvs"].shape == (len(found["t_hit"]), 2)
     with pytest.raises(ValueError, match="6"):
         scene.cast_rays(rays[..., :5])
+
+
+def test_normals_of_cast_rays_have_length_1_at_any_scale():
+    ours = kiwami.RaycastingScene()
+    corners = np.float32([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    for scale, z in ((1, 0), (1e-15, 3), (1e15, 5)):
+        ours.add_triangles(corners * np.float32(scale) + np.float32([0, 0, z]), [[0, 1, 2]])
+    rays = np.float32([[0.25, 0.25, -1, 0, 0, 1], [1e-16, 1e-16, 2, 0, 0, 1]] * 5000 + [[0] * 6])
+    rays[2] = [1e14, 1e14, 4, 0, 0, 2]
+    found = ours.cast_rays(rays.reshape(73, 137, 6))
+    assert found["primitive_normals"].shape == (73, 137, 3)
+    normals = found["primitive_normals"].reshape(-1, 3)
+    assert (normals[:-1] == [0, 0, 1]).all() and (normals[-1] == 0).all()
+    assert list(found["geometry_ids"].reshape(-1)[[0, 1, 2, -1]]) == [0, 1, 2, kiwami.INVALID_ID]
+    assert all(array.flags.c_contiguous for array in found.values())
+    assert ours.cast_rays(np.zeros((0, 6)))["primitive_normals"].shape == (0, 3)
