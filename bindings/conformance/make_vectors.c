@@ -4,7 +4,7 @@
  * binding must give the same. The scalar kernels answer, which are the oracle of all others.
  *
  *   make_vectors triangles [FILE] > vectors.txt
- *   make_vectors shapes | moving_meshes | instances | changes > FEATURE.txt
+ *   make_vectors shapes | moving_meshes | instances | changes | lights > FEATURE.txt
  *
  * FILE receives the scene of several meshes as kiwami_scene_save writes it.
  *
@@ -98,10 +98,12 @@ int main(int argument_count, char** arguments) {
     print_instances(device);
   } else if (strcmp(feature, "changes") == 0) {
     print_changes(device);
+  } else if (strcmp(feature, "lights") == 0) {
+    print_lights(device);
   } else {
     fprintf(stderr,
             "make_vectors: the feature is '%s', expected triangles, shapes, "
-            "moving_meshes, instances or changes\n",
+            "moving_meshes, instances, changes or lights\n",
             feature);
     return 2;
   }

@@ -62,5 +62,6 @@ void print_shapes(kiwami_device* device);
 void print_moving_meshes(kiwami_device* device);
 void print_instances(kiwami_device* device);
 void print_changes(kiwami_device* device);
+void print_lights(kiwami_device* device);
 
 #endif

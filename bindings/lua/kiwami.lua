@@ -351,4 +351,103 @@ function Scene:count_hits(rays, count, counts)
   return counts
 end
 
+-- Many lights ---------------------------------------------------------------------------------
+
+local LightTree = {}
+LightTree.__index = LightTree
+
+-- Lights, among which points choose in proportion to what may reach them. options: device; width, of
+-- the tree's nodes: 2, 4, 8 or 16. Changes take effect with commit or refit.
+function kiwami.light_tree(options)
+  options = options or {}
+  local device = options.device or kiwami.device()
+  local desc = descriptor("kiwami_light_tree_desc", native.kiwami_light_tree_desc_init)
+  desc.width = options.width or 0
+  local made = ffi.new("kiwami_light_tree*[1]")
+  check(native.kiwami_light_tree_create(device.object, desc, made), device.object)
+  local object = ffi.gc(made[0], native.kiwami_light_tree_release)
+  return setmetatable({ object = object, device = device }, LightTree)
+end
+
+local function tree_of(lights)
+  if not lights.object then error("the set of lights is closed", 3) end
+  return lights.object
+end
+
+-- Lets go of the set at once. Closing twice is allowed.
+function LightTree:close()
+  if not self.object then return end
+  native.kiwami_light_tree_release(ffi.gc(self.object, nil))
+  self.object = nil
+end
+
+-- Adds count lights of a zero-based array of kiwami_light; returns the number of the first.
+function LightTree:add_lights(lights, count)
+  local first = ffi.new("uint32_t[1]")
+  check_scene(self, native.kiwami_light_tree_add_lights(tree_of(self), lights, 0, count, first))
+  return first[0]
+end
+
+-- Makes a light of each triangle; returns the number of the first. vertices, triangles and options as
+-- of Scene:add_mesh; options also: radiance (1), two_sided.
+function LightTree:add_mesh(vertices, triangles, options)
+  options = options or {}
+  local positions, vertex_count = rows(vertices, options.vertex_numbers, 3, "float", "vertices")
+  local indices, triangle_count =
+    rows(triangles, options.triangle_numbers, 3, "uint32_t", "triangles")
+  local desc = descriptor("kiwami_light_mesh_desc", native.kiwami_light_mesh_desc_init)
+  desc.flags = options.two_sided and native.KIWAMI_LIGHT_TWO_SIDED or 0
+  desc.vertices, desc.vertex_count = positions, vertex_count
+  desc.indices, desc.triangle_count = indices, triangle_count
+  desc.radiance = options.radiance or 1
+  self.buffers = { positions, indices }
+  local first = ffi.new("uint32_t[1]")
+  local result = native.kiwami_light_tree_add_mesh(tree_of(self), desc, first)
+  self.buffers = nil
+  check_scene(self, result)
+  return first[0]
+end
+
+-- Gives the lights from first on other powers: a table.
+function LightTree:set_powers(first, powers)
+  local values = ffi.new("float[?]", math.max(#powers, 1), powers)
+  check_scene(
+    self, native.kiwami_light_tree_set_powers(tree_of(self), first, values, 0, #powers))
+end
+
+-- Builds the tree over all lights.
+function LightTree:commit() check_scene(self, native.kiwami_light_tree_commit(tree_of(self))) end
+
+-- As commit, but keeps the shape of the tree.
+function LightTree:refit() check_scene(self, native.kiwami_light_tree_refit(tree_of(self))) end
+
+-- A zero-based array of kiwami_light_receiver, which every light may reach.
+function kiwami.light_receivers(count)
+  local receivers = ffi.new("kiwami_light_receiver[?]", count)
+  for i = 0, count - 1 do receivers[i].link_mask = -1ULL end
+  return receivers
+end
+
+-- Lets each of count receivers choose a light: a zero-based array of kiwami_light_choice.
+function LightTree:sample(receivers, count, choices)
+  choices = choices or ffi.new("kiwami_light_choice[?]", count)
+  check_scene(
+    self, native.kiwami_light_sample(tree_of(self), receivers, 0, choices, 0, count, nil))
+  return choices
+end
+
+-- The probability with which each receiver chooses the light of the choice beside it: a zero-based
+-- array of floats.
+function LightTree:pdf(receivers, count, choices)
+  local probabilities = ffi.new("float[?]", count)
+  -- A choice begins with the name of its light.
+  local names = ffi.cast("const kiwami_light_name*", choices)
+  check_scene(
+    self,
+    native.kiwami_light_pdf(
+      tree_of(self), receivers, 0, names, ffi.sizeof("kiwami_light_choice"), probabilities, 0,
+      count, nil))
+  return probabilities
+end
+
 return kiwami

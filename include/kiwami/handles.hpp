@@ -21,6 +21,8 @@ using DeviceInfo = kiwami_device_info;
 /// Three numbers that lie together.
 using Vertex = std::array<float, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
+/// Three rows of four numbers, from a scene's space to the outer one.
+using Transform = std::array<float, 12>;
 
 /// An error of the library: its number, and its sentence as what().
 class Error : public std::runtime_error {

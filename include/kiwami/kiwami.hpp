@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "callbacks.hpp"
+#include "lights.hpp"
 
 namespace kiwami {
 
@@ -206,9 +207,6 @@ class Scene : public detail::Handle<kiwami_scene, kiwami_scene_retain, kiwami_sc
 
   Device device_;
 };
-
-/// Three rows of four numbers, from a scene's space to the outer one.
-using Transform = std::array<float, 12>;
 
 /// An array of instances: each shows one of the scenes, moved by its transform.
 class Instances : public Geometry {

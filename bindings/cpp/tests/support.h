@@ -18,6 +18,38 @@ inline void note(const char* feature) {
   if (path && !testing::Test::HasFailure()) std::ofstream(path, std::ios::app) << feature << '\n';
 }
 
+/// Words of the conformance vectors, one after the other.
+class Words {
+ public:
+  explicit Words(const std::string& file)
+      : file_(std::string(KIWAMI_VECTORS_FOLDER "/") + file + ".txt") {
+    EXPECT_EQ(word(), "kiwami-conformance");
+    EXPECT_EQ(word(), "1");
+  }
+  std::string word() {
+    std::string text;
+    file_ >> text;
+    return text;
+  }
+  std::uint64_t number() { return std::stoull(word()); }
+  std::uint32_t int32() { return static_cast<std::uint32_t>(number()); }
+  template <typename T>
+  T words() {
+    std::array<std::uint32_t, sizeof(T) / 4> bits;
+    for (std::uint32_t& each : bits) each = int32();
+    return std::bit_cast<T>(bits);
+  }
+  template <typename T>
+  std::vector<T> array(std::size_t count) {
+    std::vector<T> values(count);
+    for (T& value : values) value = words<T>();
+    return values;
+  }
+
+ private:
+  std::ifstream file_;
+};
+
 using Bits = std::array<std::uint32_t, sizeof(kiwami::Hit) / 4>;
 
 inline constexpr std::array<kiwami::Vertex, 3> kCorners{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};

@@ -65,7 +65,7 @@ public class ConformanceTest {
     if (path != null) File.AppendAllLines(path, features);
   }
 
-  static string Read(string name) {
+  public static string Read(string name) {
     return File.ReadAllText(Path.Combine(Folder, name + ".txt"));
   }
 

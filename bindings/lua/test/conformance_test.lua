@@ -221,6 +221,87 @@ function tests.answers_are_the_same_to_the_bit()
   check_vectors("changes", "changes, refit")
 end
 
+-- Changes a set of lights, or compares choices, by the word of the statement.
+local light_statements = {}
+
+function light_statements.light(words, state)
+  local count = words.number()
+  local lights = ffi.new("kiwami_light[?]", count)
+  words.words_into(as_words(lights), 24 * count)
+  state.lights:add_lights(lights, count)
+end
+
+function light_statements.light_mesh(words, state)
+  local two_sided, radiance = words.number() ~= 0, words.floats(1)[0]
+  local vertex_count, triangle_count = words.number(), words.number()
+  local vertices = words.floats(3 * vertex_count)
+  state.lights:add_mesh(vertices, words.numbers(3 * triangle_count),
+                        { two_sided = two_sided, radiance = radiance,
+                          vertex_numbers = 3 * vertex_count })
+end
+
+function light_statements.powers(words, state)
+  local first, count = words.number(), words.number()
+  local bits, powers = words.floats(count), {}
+  for i = 1, count do powers[i] = bits[i - 1] end
+  state.lights:set_powers(first, powers)
+end
+
+function light_statements.commit(_, state) state.lights:commit() end
+function light_statements.refit(_, state) state.lights:refit() end
+
+function light_statements.receivers(words, state)
+  state.count = words.number()
+  state.receivers = kiwami.light_receivers(state.count)
+  words.words_into(as_words(state.receivers), 14 * state.count)
+end
+
+function light_statements.choices(words, state)
+  state.choices = state.lights:sample(state.receivers, state.count)
+  words.expect_words(as_words(state.choices), 6 * state.count, "choice")
+  state.compared = state.compared + state.count
+end
+
+function light_statements.pdf(words, state)
+  local probabilities = state.lights:pdf(state.receivers, state.count, state.choices)
+  words.expect_words(as_words(probabilities), state.count, "probability")
+end
+
+function tests.choices_are_the_same_to_the_bit()
+  for _, isa in ipairs({ "auto", "scalar" }) do
+    local device = kiwami.device({ isa = isa, validate = true })
+    local words, compared = reader(read_vectors("lights")), 0
+    equal(words.word(), "kiwami-conformance")
+    equal(words.word(), "1")
+    while words.word() == "lights" do
+      local lights = kiwami.light_tree({ device = device, width = words.number() })
+      local state = { lights = lights, compared = 0 }
+      local word = words.word()
+      while word ~= "end" do
+        assert(light_statements[word], word)(words, state)
+        word = words.word()
+      end
+      compared = compared + state.compared
+      lights:close()
+      lights:close()
+    end
+    assert(compared > 100)
+  end
+  note("many lights")
+end
+
+function tests.bad_lights_are_errors()
+  local lights, one = kiwami.light_tree(), kiwami.light_receivers(1)
+  equal(pcall(lights.sample, lights, one, 1), false)
+  equal(pcall(lights.add_mesh, lights, { 0, 0, 0 }, { 0, 0, 1 }), false)
+  equal(pcall(lights.set_powers, lights, 0, { 1 }), false)
+  equal(pcall(kiwami.light_tree, { width = 3 }), false)
+  lights:commit()
+  equal(lights:sample(one, 1)[0].light_id, kiwami.INVALID_ID)
+  lights:close()
+  equal(pcall(lights.commit, lights), false)
+end
+
 function tests.geometries_of_wrong_sizes_are_errors()
   local scene, other = kiwami.scene(), kiwami.scene()
   local zeros = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }

@@ -105,5 +105,66 @@ export class Scene {
   close(): void;
 }
 
+/** See kiwami_light of light.h for which fields each kind has. */
+export interface Light {
+  kind?: 'point' | 'spot' | 'triangle' | 'quad' | 'sphere' | 'disc' | 'distant' | 'environment';
+  twoSided?: boolean;
+  /** Up to four points of three numbers. */
+  points?: ArrayLike<number>;
+  direction?: ArrayLike<number>;
+  radius?: number;
+  cosInner?: number;
+  cosOuter?: number;
+  power?: number;
+  userId?: number;
+  linkMask?: bigint;
+}
+
+export class LightReceivers {
+  constructor(count: number);
+  static from(
+    positions: ArrayLike<number> & { slice(first: number, end: number): ArrayLike<number> },
+    normals: (ArrayLike<number> & { slice(first: number, end: number): ArrayLike<number> }) | null,
+    random: ArrayLike<number>,
+  ): LightReceivers;
+  readonly count: number;
+  /** 56 bytes a receiver, as kiwami_light_receiver of light.h. */
+  readonly buffer: Buffer;
+  setPosition(receiver: number, position: ArrayLike<number>): void;
+  setNormal(receiver: number, normal: ArrayLike<number>): void;
+  setSegment(receiver: number, segment: ArrayLike<number>): void;
+  setFlags(receiver: number, flags: number): void;
+  setLinkMask(receiver: number, linkMask: bigint): void;
+  setRandom(receiver: number, random: number): void;
+}
+
+export class LightChoices {
+  constructor(count: number);
+  readonly count: number;
+  /** 24 bytes a choice, as kiwami_light_choice of light.h. */
+  readonly buffer: Buffer;
+  lightId(choice: number): number;
+  instanceId(choice: number): number;
+  userId(choice: number): number;
+  probability(choice: number): number;
+  random(choice: number): number;
+}
+
+export class LightTree {
+  constructor(device: Device, options?: { width?: number });
+  addLights(lights: Light[]): number;
+  addMesh(
+    vertices: ArrayLike<number>,
+    triangles: ArrayLike<number>,
+    options?: { radiance?: number; twoSided?: boolean },
+  ): number;
+  setPowers(first: number, powers: ArrayLike<number>): void;
+  commit(): void;
+  refit(): void;
+  sample(receivers: LightReceivers): LightChoices;
+  pdf(receivers: LightReceivers, choices: LightChoices): Float32Array;
+  close(): void;
+}
+
 /** The constants of the C interface. */
 export const constants: { readonly [name: string]: number };

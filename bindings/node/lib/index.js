@@ -4,6 +4,7 @@
 
 const { Geometries } = require('./geometries');
 const { ALL_MASKS, Handle, addressable } = require('./handle');
+const { LightChoices, LightReceivers, LightTree } = require('./lights');
 const {
   KiwamiError,
   callAsync,
@@ -250,4 +251,14 @@ class Scene extends Geometries {
   }
 }
 
-module.exports = { Device, Hits, KiwamiError, Rays, Scene, constants };
+module.exports = {
+  Device,
+  Hits,
+  KiwamiError,
+  LightChoices,
+  LightReceivers,
+  LightTree,
+  Rays,
+  Scene,
+  constants,
+};

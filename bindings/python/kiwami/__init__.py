@@ -26,7 +26,7 @@ from .errors import (
     ValidationError,
 )
 from .hits import Hits
-from .lights import LightTree, light_dtype
+from .lights import LightTree, light_dtype, light_receiver_dtype
 from .raycasting import RaycastingScene
 from .scene import Scene
 from .trimesh_ray import RayMeshIntersector
@@ -77,6 +77,7 @@ __all__ = [
     "default_device",
     "hit_dtype",
     "light_dtype",
+    "light_receiver_dtype",
     "make_rays",
     "ray_dtype",
     "user_hit_dtype",

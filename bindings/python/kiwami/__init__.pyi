@@ -11,6 +11,7 @@ INVALID_ID: int
 ray_dtype: np.dtype[np.void]
 hit_dtype: np.dtype[np.void]
 light_dtype: np.dtype[np.void]
+light_receiver_dtype: np.dtype[np.void]
 user_hit_dtype: np.dtype[np.void]
 
 class KiwamiError(Exception):

@@ -12,7 +12,8 @@ from .device import default_device
 
 #: A light, as kiwami_light of light.h: fields type, flags, points, direction, radius, ...
 light_dtype = np.dtype(_native.kiwami_light)
-_receiver_dtype = np.dtype(_native.kiwami_light_receiver)
+#: Who asks for a light, as kiwami_light_receiver of light.h: position, normal, segment, flags, ...
+light_receiver_dtype = np.dtype(_native.kiwami_light_receiver)
 #: What sample() gives: light_id, instance_id, user_id, probability, random.
 choice_dtype = np.dtype(_native.kiwami_light_choice)
 _name_dtype = np.dtype(_native.kiwami_light_name)
@@ -130,8 +131,12 @@ class LightTree(Handle):
         return {name: getattr(info, name) for name, _ in kind._fields_ if name != "struct_size"}
 
     def _receivers(self, points, normals, random, link_mask, segments):
+        if isinstance(points, np.ndarray) and points.dtype == light_receiver_dtype:
+            if normals is not None or segments is not None:
+                raise TypeError("normals or segments are given beside receivers that have theirs")
+            return np.ascontiguousarray(points).reshape(-1)
         positions = as_dense_rows(points, 3, "points")
-        receivers = np.zeros(len(positions), _receiver_dtype)
+        receivers = np.zeros(len(positions), light_receiver_dtype)
         receivers["position"] = positions
         if normals is not None:
             receivers["normal"] = as_dense_rows(np.broadcast_to(normals, positions.shape), 3,
@@ -139,6 +144,8 @@ class LightTree(Handle):
         if segments is not None:
             receivers["segment"] = as_dense_rows(np.broadcast_to(segments, positions.shape), 3,
                                                  "segments")
+        if random is None:
+            random = np.random.default_rng().random(len(receivers))
         receivers["link_mask"], receivers["random"] = link_mask, random
         return receivers
 
@@ -146,14 +153,12 @@ class LightTree(Handle):
         """Lets each point choose a light: records of light_id, instance_id, user_id, probability
         and random (a new number from 0 to 1, for a point on the light).
 
-        points    (N, 3)
+        points    (N, 3), or records of light_receiver_dtype, which have all of the others
         normals   (N, 3), or None: points in a volume
         random    (N,) from 0 to 1, 1 excluded; None: drawn here
         segments  (N, 3) from each point to the other end of a segment, or None
         """
         self._prepare()
-        if random is None:
-            random = np.random.default_rng().random(len(np.asarray(points).reshape(-1, 3)))
         receivers = self._receivers(points, normals, random, link_mask, segments)
         choices = np.empty(len(receivers), choice_dtype)
         self._check(

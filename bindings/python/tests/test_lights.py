@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import numpy as np
 import pytest
+import vectors
 
 import kiwami
 
@@ -17,7 +18,59 @@ def lights():
     return tree
 
 
+class LightPlayer:
+    """Does what the file of vectors says, and compares the choices."""
+
+    def __init__(self, device):
+        self.device = device
+        self.compared = 0
+
+    def on_lights(self, width):
+        self.lights = kiwami.LightTree(self.device, width=width)
+
+    def on_light(self, words):
+        self.lights.add_lights(words.view(kiwami.light_dtype).reshape(-1))
+
+    def on_light_mesh(self, value):
+        is_two_sided, radiance, vertices, faces = value
+        self.lights.add_mesh(vertices, faces, radiance=radiance, two_sided=is_two_sided)
+
+    def on_powers(self, value):
+        self.lights.set_powers(*value)
+
+    def on_commit(self, _):
+        self.lights.commit()
+
+    def on_refit(self, _):
+        self.lights.refit()
+
+    def on_receivers(self, words):
+        self.receivers = words.view(kiwami.light_receiver_dtype).reshape(-1)
+
+    def on_choices(self, expected):
+        self.choices = self.lights.sample(self.receivers)
+        assert (self.choices.view(np.uint32).reshape(-1, 6) == expected).all()
+        self.compared += len(expected)
+
+    def on_pdf(self, expected):
+        found = self.lights.pdf(
+            self.receivers, None, self.choices["light_id"], self.choices["instance_id"]
+        )
+        assert (found.view(np.uint32) == expected).all()
+
+    def on_end(self, _):
+        self.lights.close()
+
+
+@pytest.mark.parametrize("isa", ["auto", "scalar"])
 @pytest.mark.feature("many lights")
+def test_choices_are_the_same_to_the_bit(isa):
+    player = LightPlayer(kiwami.Device(isa=isa, validate=True))
+    for word, value in vectors.statements("lights"):
+        getattr(player, f"on_{word}")(value)
+    assert player.compared > 100
+
+
 def test_probabilities_are_those_of_the_samples(lights, random):
     points = random.uniform([-5, -5, 0], [105, 5, 4], (2000, 3))
     normals = np.array([0, 0, 1.0])

@@ -38,7 +38,7 @@ def statements(name):
             return
         if word == "error":
             return
-        if word == "rays":
+        if word in ("rays", "receivers"):
             rays = words.number()
         yield word, _READERS[word](words, rays)
 
@@ -82,6 +82,12 @@ def _multi_hit(words, rays):
     return max_hits, words.numbers(rays + 1), words.words(total, 9)
 
 
+def _light_mesh(words, _):
+    is_two_sided, radiance = words.number() != 0, float(_floats(words, 1)[0])
+    vertex_count, triangle_count = words.number(), words.number()
+    return is_two_sided, radiance, _floats(words, vertex_count, 3), words.words(triangle_count, 3)
+
+
 _READERS = {
     "scene": lambda words, _: words.word(),
     "mesh": _mesh,
@@ -100,6 +106,13 @@ _READERS = {
     "any_hit": lambda words, rays: words.words(rays),
     "multi_hit": _multi_hit,
     "file": lambda words, _: FOLDER / words.word(),
+    "lights": lambda words, _: words.number(),
+    "light": lambda words, _: words.words(words.number(), 24),
+    "light_mesh": _light_mesh,
+    "powers": lambda words, _: (words.number(), _floats(words, words.number())),
+    "receivers": lambda words, count: words.words(count, 14),
+    "choices": lambda words, count: words.words(count, 6),
+    "pdf": lambda words, count: words.words(count),
     "end": lambda words, _: None,
 }
 

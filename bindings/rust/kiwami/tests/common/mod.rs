@@ -12,6 +12,7 @@ pub fn note(feature: &str) {
 
 pub const CORNERS: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
+#[allow(dead_code)] // not every test that includes this file needs it
 pub fn one_triangle(device: &Device) -> SceneBuilder {
     let mut builder = SceneBuilder::new(device).unwrap();
     builder.add_mesh(&CORNERS, &[[0, 1, 2]]).unwrap();

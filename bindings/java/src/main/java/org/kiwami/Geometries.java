@@ -50,19 +50,19 @@ final class Geometries {
     }
   }
 
-  private static Memory copy(float[] values) {
+  static Memory copy(float[] values) {
     Memory memory = new Memory(Math.max(4L * values.length, 1));
     memory.write(0, values, 0, values.length);
     return memory;
   }
 
-  private static Memory copy(int[] values) {
+  static Memory copy(int[] values) {
     Memory memory = new Memory(Math.max(4L * values.length, 1));
     memory.write(0, values, 0, values.length);
     return memory;
   }
 
-  private static int rows(int numbers, int columns, String name) {
+  static int rows(int numbers, int columns, String name) {
     if (numbers % columns != 0) {
       throw new IllegalArgumentException(
           name + " has " + numbers + " numbers, expected a multiple of " + columns);

@@ -113,7 +113,7 @@ public final class Scene implements AutoCloseable {
   }
 
   /** A direct buffer is read where it lies; an empty one has an address too. */
-  private static Pointer address(Buffer buffer) {
+  static Pointer address(Buffer buffer) {
     return buffer.capacity() == 0 ? new Memory(1) : com.sun.jna.Native.getDirectBufferPointer(buffer);
   }
 

@@ -21,13 +21,13 @@ import org.junit.Test;
 
 /** The answers that every binding must give, to the bit. */
 public class ConformanceTest {
-  private static String vectors(String name) throws IOException {
+  static String vectors(String name) throws IOException {
     Path path = Paths.get(System.getProperty("kiwami.vectors")).resolveSibling(name + ".txt");
     return new String(Files.readAllBytes(path), StandardCharsets.UTF_8);
   }
 
   /** Notes that features were found right, for the table of the documents. */
-  private static void note(String... features) throws IOException {
+  static void note(String... features) throws IOException {
     String path = System.getenv("KIWAMI_FEATURES");
     if (path != null) {
       Files.write(
@@ -35,7 +35,7 @@ public class ConformanceTest {
     }
   }
 
-  private static int word(Scanner words) {
+  static int word(Scanner words) {
     return (int) words.nextLong();
   }
 
@@ -81,11 +81,11 @@ public class ConformanceTest {
     note("files");
   }
 
-  private static int[] words(Scanner words, int count) {
+  static int[] words(Scanner words, int count) {
     return IntStream.range(0, count).map(i -> word(words)).toArray();
   }
 
-  private static float[] floats(Scanner words, int count) {
+  static float[] floats(Scanner words, int count) {
     float[] values = new float[count];
     for (int i = 0; i < count; ++i) {
       values[i] = Float.intBitsToFloat(word(words));
