@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Traces the same batch of rays in every language, in turn with C, and prints a table of ratios.
 
-  compare_languages.py [--build DIR] [--rays N] [--rounds N] [--repeats N] [--languages A,B] SCENE
+  compare_languages.py [--build DIR] [--rays N] [--rounds N] [--repeats N] [--languages A,B]
+                       [--write DOCUMENT] SCENE
 
 SCENE is a file of `kiwami build`. Needs a build with tests (default: build/release). The figure is
 the speed of the language over that of C: medians of the rounds of one process (the first of which
-only warms up), and of the repeats.
+only warms up), and of the repeats. --write also puts the table under the document's heading
+"Speed", in place of the one that is there.
 """
 
 import argparse
@@ -67,6 +69,17 @@ def seconds_of(command, arguments, variables):
     return statistics.median([float(line) for line in printed.stdout.split()][1:])
 
 
+def write_table(document, lines):
+    """Replaces the table of the section "Speed", or adds one at its end."""
+    before, found, rest = document.read_text().partition("\n## Speed\n")
+    if not found:
+        sys.exit(f"{document} has no heading 'Speed'")
+    section, next_heading, after = rest.partition("\n## ")
+    text = [line for line in section.rstrip().splitlines() if not line.startswith("|")]
+    section = "\n".join([*"\n".join(text).rstrip().splitlines(), "", *lines, ""])
+    document.write_text(before + found + section + next_heading + after)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=pathlib.Path, default=BINDINGS.parent / "build" / "release")
@@ -74,6 +87,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--languages", default="")
+    parser.add_argument("--write", type=pathlib.Path, metavar="DOCUMENT")
     parser.add_argument("scene", metavar="SCENE")
     arguments = parser.parse_args()
     arguments.build = arguments.build.resolve()
@@ -83,13 +97,17 @@ def main():
     write_rays(arguments.scene, arguments.ray_file, arguments.rays)
     programs = commands(arguments.build)
     wanted = arguments.languages.split(",") if arguments.languages else list(programs)[1:]
-    print("| language | speed over C |\n|---|---|")
+    lines = ["| language | speed over C |", "|---|---|"]
+    print("\n".join(lines))
     for language in wanted:
         ratios = [seconds_of(programs["C"], arguments, variables)
                   / seconds_of(programs[language], arguments, variables)
                   for _ in range(arguments.repeats)]
-        print(f"| {language} | {statistics.median(ratios):.3f} |", flush=True)
+        lines.append(f"| {language} | {statistics.median(ratios):.3f} |")
+        print(lines[-1], flush=True)
     arguments.ray_file.unlink()
+    if arguments.write:
+        write_table(arguments.write, lines)
 
 
 if __name__ == "__main__":
