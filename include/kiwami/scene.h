@@ -115,9 +115,11 @@ enum {
                                       * no binary tree to optimise, and contractions have no say */
   KIWAMI_BUILDER_STR = 10,   /* the tiles of a sort along each axis, as R-trees are packed */
   KIWAMI_BUILDER_TRBVH = 11, /* LBVH, its treelets restructured */
-  KIWAMI_BUILDER_WIDE_TOP_DOWN = 12, /* binned, straight to the wide tree: the same holds */
-  KIWAMI_BUILDER_WIDE_LINEAR = 13,   /* the cells of a Morton curve, straight to the wide tree: the
-                                      * same holds; the quickest of all */
+  KIWAMI_BUILDER_WIDE_TOP_DOWN = 12, /* as BINNED_SAH, but straight to the wide tree, unless an
+                                      * optimiser of binary trees or another contraction than
+                                      * OPTIMAL asks for a binary one */
+  KIWAMI_BUILDER_WIDE_LINEAR = 13,   /* as LBVH by extended codes, straight to the wide tree, unless
+                                      * the same; the quickest of all */
   KIWAMI_BUILDER_TRIAL = 14          /* BINNED_SAH and PLOC, with the optimisers of binary trees;
                                       * the tree stays that representative rays visit less */
 };

@@ -107,10 +107,7 @@ void Bvh::build(Array<BuildPrimitive> primitives, const BvhPlan& plan) {
   }
   // Nothing is merged, so nothing is divided to be merged.
   parameters.set(KIWAMI_PARAMETER_MERGE_LEAVES, 0);
-  // Of two children a node, wide_linear is as lbvh, so that the quality that it stands for is too.
-  const bool has_binary_twin =
-      parameters.whole(KIWAMI_PARAMETER_BUILDER) == KIWAMI_BUILDER_WIDE_LINEAR;
-  if (builds_wide_tree(parameters) && !(plan.width == 2 && has_binary_twin)) {
+  if (builds_wide_tree(parameters)) {
     if (plan.width == 2) {
       throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                   "width is 2, expected 4, 8 or 16, as builder %s makes no binary tree",

@@ -123,7 +123,6 @@ bool makes_leaves(const SceneParameters& parameters) {
     case KIWAMI_BUILDER_SPATIAL_SPLIT:
       return true;
     case KIWAMI_BUILDER_LBVH:
-    case KIWAMI_BUILDER_WIDE_LINEAR:
       return !is_binary_edited(parameters);
     default:
       return false;
@@ -131,9 +130,8 @@ bool makes_leaves(const SceneParameters& parameters) {
 }
 
 CurveCode curve_code(const SceneParameters& parameters) {
-  const bool is_extended = parameters.whole(KIWAMI_PARAMETER_CURVE_CODE) != 0 ||
-                           parameters.whole(KIWAMI_PARAMETER_BUILDER) == KIWAMI_BUILDER_WIDE_LINEAR;
-  return is_extended ? CurveCode::kExtended : CurveCode::kPlain;
+  return parameters.whole(KIWAMI_PARAMETER_CURVE_CODE) != 0 ? CurveCode::kExtended
+                                                            : CurveCode::kPlain;
 }
 
 LbvhBuilder::Config lbvh_config(const SceneParameters& parameters, uint32_t width) {
@@ -166,7 +164,6 @@ BinaryBvh run_builder(Array<BuildPrimitive> primitives, const TriangleSource& so
                       const Parallel& parallel) {
   switch (parameters.whole(KIWAMI_PARAMETER_BUILDER)) {
     case KIWAMI_BUILDER_LBVH:
-    case KIWAMI_BUILDER_WIDE_LINEAR:
       return LbvhBuilder::build(std::move(primitives), lbvh_config(parameters, width), memory,
                                 parallel);
     case KIWAMI_BUILDER_PLOC:
@@ -384,6 +381,21 @@ double cost_to_rays(const BinaryBvh& bvh, const TriangleSource& source,
   return cost;
 }
 
+/// What makes the splits of a builder of wide trees into a binary one.
+SceneParameters binary_twin_of(SceneParameters parameters) {
+  switch (parameters.whole(KIWAMI_PARAMETER_BUILDER)) {
+    case KIWAMI_BUILDER_WIDE_LINEAR:
+      parameters.set(KIWAMI_PARAMETER_BUILDER, KIWAMI_BUILDER_LBVH);
+      parameters.set(KIWAMI_PARAMETER_CURVE_CODE, 1);
+      break;
+    case KIWAMI_BUILDER_WIDE_TOP_DOWN:
+    case KIWAMI_BUILDER_WIDE_BOTTOM_UP:
+      parameters.set(KIWAMI_PARAMETER_BUILDER, KIWAMI_BUILDER_BINNED_SAH);
+      break;
+  }
+  return parameters;
+}
+
 /// Top-down or bottom-up: which of the two is the better tree depends on the scene, and that of the
 /// lower cost by areas is often not the one that rays visit less. So both are built, and tried.
 BinaryBvh build_by_trial(Array<BuildPrimitive> primitives, const TriangleSource& source,
@@ -413,7 +425,8 @@ BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSourc
   if (parameters.whole(KIWAMI_PARAMETER_BUILDER) == KIWAMI_BUILDER_TRIAL) {
     return build_by_trial(std::move(primitives), source, rays, parameters, width, memory, parallel);
   }
-  return build_by(std::move(primitives), source, parameters, width, memory, parallel);
+  return build_by(std::move(primitives), source, binary_twin_of(parameters), width, memory,
+                  parallel);
 }
 
 Array<RepresentativeRay> sample_rays_for(const SceneParameters& parameters,
@@ -438,9 +451,16 @@ void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
 }
 
 bool builds_wide_tree(const SceneParameters& parameters) {
-  const uint32_t builder = parameters.whole(KIWAMI_PARAMETER_BUILDER);
-  return builder == KIWAMI_BUILDER_WIDE_BOTTOM_UP || builder == KIWAMI_BUILDER_WIDE_TOP_DOWN ||
-         builder == KIWAMI_BUILDER_WIDE_LINEAR;
+  switch (parameters.whole(KIWAMI_PARAMETER_BUILDER)) {
+    case KIWAMI_BUILDER_WIDE_BOTTOM_UP:
+      return true;
+    case KIWAMI_BUILDER_WIDE_TOP_DOWN:
+    case KIWAMI_BUILDER_WIDE_LINEAR:
+      return !is_binary_edited(parameters) &&
+             parameters.whole(KIWAMI_PARAMETER_CONTRACTION) == KIWAMI_CONTRACTION_OPTIMAL;
+    default:
+      return false;
+  }
 }
 
 WideDraft build_wide_draft(Array<BuildPrimitive> primitives, const WideTreeConfig& config,

@@ -25,7 +25,8 @@ WideTreeConfig wide_tree_config(const SceneParameters& parameters, uint32_t widt
 
 /// Runs the builder that the parameters name, and those of their optimisers that act on the binary
 /// tree. The primitives are those of the source that can be hit; rays are for builders that go by
-/// them. Builders that make the wide tree itself stand for those of the same splits.
+/// them. Where there is to be a binary tree, WIDE_TOP_DOWN is as BINNED_SAH and WIDE_LINEAR as LBVH by
+/// extended codes: the same splits.
 BinaryBvh build_binary_bvh(Array<BuildPrimitive> primitives, const TriangleSource& source,
                            std::span<const RepresentativeRay> rays,
                            const SceneParameters& parameters, uint32_t width, Memory& memory,
@@ -42,7 +43,8 @@ void optimize_wide_tree(WideTree& tree, const TriangleSource& source,
                         std::span<const RepresentativeRay> rays, const SceneParameters& parameters,
                         Memory& memory, const Parallel& parallel);
 
-/// Whether the builder makes the wide tree itself, without a binary one.
+/// Whether the builder makes the wide tree itself: where it has a binary twin, as long as nothing
+/// asks for a binary tree.
 bool builds_wide_tree(const SceneParameters& parameters);
 
 /// Runs such a builder. Throws Error(INVALID_ARGUMENT) where optimisers of binary trees

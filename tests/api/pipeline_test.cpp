@@ -328,6 +328,35 @@ TEST_F(Pipeline, BuildersOfWideTreesTakeOptimizersOfWideTreesOnly) {
             "optimizers but those of wide trees");
 }
 
+TEST_F(Pipeline, WhatAsksForABinaryTreeGetsThatOfTheSameSplits) {
+  const Triangles triangles = random_triangles(12000, 5);
+  const Geometry mesh = make_mesh(device_, triangles.desc());
+  const auto cost = [&](uint32_t builder, uint32_t contraction, bool rotates, bool is_extended) {
+    const Scene scene = make_scene(device_);
+    EXPECT_EQ(kiwami_scene_attach(scene.get(), mesh.get(), nullptr), KIWAMI_OK);
+    set(scene, KIWAMI_PARAMETER_BUILDER, builder);
+    set(scene, KIWAMI_PARAMETER_CONTRACTION, contraction);
+    set(scene, KIWAMI_PARAMETER_CURVE_CODE, is_extended ? 1 : 0);
+    const uint32_t optimizers[] = {KIWAMI_OPTIMIZER_ROTATION};
+    EXPECT_EQ(kiwami_scene_set_optimizers(scene.get(), optimizers, rotates ? 1 : 0), KIWAMI_OK);
+    EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error(device_.get());
+    return info_of(scene).sah_cost;
+  };
+  constexpr uint32_t kTwins[][2] = {{KIWAMI_BUILDER_WIDE_TOP_DOWN, KIWAMI_BUILDER_BINNED_SAH},
+                                    {KIWAMI_BUILDER_WIDE_LINEAR, KIWAMI_BUILDER_LBVH}};
+  for (const auto& [wide, binary] : kTwins) {
+    for (const uint32_t contraction :
+         {KIWAMI_CONTRACTION_SURFACE_AREA, KIWAMI_CONTRACTION_OPTIMAL}) {
+      for (const bool rotates : {false, true}) {
+        const double of_wide = cost(wide, contraction, rotates, false);
+        const double of_binary = cost(binary, contraction, rotates, binary == KIWAMI_BUILDER_LBVH);
+        const bool is_direct = contraction == KIWAMI_CONTRACTION_OPTIMAL && !rotates;
+        EXPECT_EQ(of_wide == of_binary, !is_direct) << wide << " " << contraction;
+      }
+    }
+  }
+}
+
 TEST_F(Pipeline, ErrorsNameWhatIsWrong) {
   const Scene scene = make_scene(device_);
   const uint32_t methods[KIWAMI_MAX_OPTIMIZERS + 1] = {200};

@@ -79,7 +79,7 @@ TEST(Inspect, WritesEveryNodeOfASmallTree) {
   EXPECT_EQ(json.at("scene").at("bounds").size(), 6u);
   ASSERT_EQ(json.at("pipelines").size(), 1u);
   const Json& pipeline = json.at("pipelines")[0];
-  EXPECT_EQ(pipeline.at("name"), "binned_sah + reorder_sato, optimal, merged");
+  EXPECT_EQ(pipeline.at("name"), "wide_top_down + reorder_sato, merged");
   expect_sound(pipeline, 10000);
   const Json& nodes = pipeline.at("nodes");
   EXPECT_EQ(nodes.at("parent").size(), pipeline.at("tree_node_count"));

@@ -162,10 +162,10 @@ std::vector<BuildOptions> choose_pipelines(const std::vector<std::string>& build
       pipelines.push_back(pipeline);
     }
   }
-  if (makes_wide_tree(base.builder)) return pipelines;
   for (const std::string& contraction : method_names(KIWAMI_STAGE_CONTRACTION)) {
     BuildOptions pipeline = base;
     pipeline.optimizers.clear();
+    if (makes_wide_tree(base.builder)) pipeline.builder = KIWAMI_BUILDER_BINNED_SAH;
     pipeline.contraction = method_of_name(KIWAMI_STAGE_CONTRACTION, contraction);
     if (pipeline.contraction != base.contraction) pipelines.push_back(pipeline);
   }

@@ -459,7 +459,8 @@ std::string pipeline_name(const BuildOptions& options) {
   for (const uint32_t method : options.optimizers) {
     name += std::string(" + ") + kiwami_method_name(KIWAMI_STAGE_OPTIMIZER, method);
   }
-  if (!makes_wide_tree(options.builder)) {
+  const bool is_optimal = options.contraction == KIWAMI_CONTRACTION_OPTIMAL;
+  if (!makes_wide_tree(options.builder) || !is_optimal) {
     name += std::string(", ") + kiwami_method_name(KIWAMI_STAGE_CONTRACTION, options.contraction);
   }
   name += options.merge_leaves ? ", merged" : ", unmerged";
