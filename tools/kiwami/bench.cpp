@@ -13,12 +13,16 @@
 #include "measure/bench_rays.h"
 #include "measure/contest.h"
 #include "measure/embree_contender.h"
+#include "scene/motion.h"
+#include "scene/random.h"
 
 namespace kiwami::tools {
 namespace {
 
 // An entrance of a peer that is so much slower than its best one in the warming-up is left out.
 constexpr double kHopeless = 1.6;
+
+constexpr uint64_t kTimeSeed = 23;
 
 /// One entrance of a peer that takes part in a contest.
 struct PeerSide {
@@ -61,6 +65,9 @@ class SceneBench {
         listener_(listener),
         file_(load_known_scene(name, settings.instanced)) {
     if (!file_.instances.empty()) name_ += " instanced";
+    if (settings.motion.empty()) return;
+    set_in_motion(file_, settings.motion);
+    name_ += " moving";
   }
 
   void run() {
@@ -111,8 +118,8 @@ void SceneBench::run_device(uint32_t isa, uint32_t threads) {
 }
 
 double SceneBench::overlap_of(const BuiltScene& scene) {
-  // The trees under instances are others.
-  if (!file_.instances.empty()) return 0.0;
+  // The trees under instances, and of what moves, are others.
+  if (!file_.instances.empty() || file_.is_moving()) return 0.0;
   const auto [found, is_new] = overlaps_.try_emplace(scene.info().bvh_width, 0.0);
   if (is_new) found->second = scene.measures().epo;
   return found->second;
@@ -123,6 +130,12 @@ void SceneBench::make_rays(const BuiltScene& scene) {
   const View view = choose_view(settings_.view, file_, box, 1.0f);
   rays_ = make_bench_rays(scene, view, box, settings_.rays, settings_.ray_count);
   least_distance_ = 1e-6f * box.diagonal();
+  if (!file_.is_moving()) return;
+  // The rays start where things are at time 0; each then has a time of its own.
+  Random random(kTimeSeed);
+  for (BenchRays& rays : rays_) {
+    for (kiwami_ray& ray : rays.set.rays) ray.time = random.uniform();
+  }
 }
 
 std::unique_ptr<PeerScene> SceneBench::build_peer(const Device& device) const {

@@ -32,6 +32,7 @@ struct BenchSettings {
   std::vector<uint32_t> isas;  ///< KIWAMI_ISA_*
   BuildOptions build;
   bool instanced = false;  ///< instances stay instances, here and there
+  std::string motion;      ///< see scene/motion.h; "": everything rests
   ViewOptions view;
   BenchPeer peer = BenchPeer::kEmbree;
   bool robust = false;  ///< Embree's robust scene flag

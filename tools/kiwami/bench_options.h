@@ -27,6 +27,7 @@ struct BenchOptions {
   std::string isas = "auto";
   uint32_t bvh_width = 0;
   bool instanced = false;
+  std::string motion;
   PipelineOptions pipeline;
   std::string pipelines;
   std::string structures;
@@ -45,6 +46,12 @@ struct BenchOptions {
   std::vector<std::string> parameters;
   ViewOptions view;
   std::string json;
+
+  /// In place of a race with a peer, of the scenes.
+  bool asks_for_table() const {
+    return !pipelines.empty() || edit != 0 || change || !structures.empty() || !queries.empty() ||
+           distributions || lights.is_asked;
+  }
 };
 
 }  // namespace kiwami::tools

@@ -80,6 +80,7 @@ BenchSettings make_settings(const BenchOptions& options) {
     settings.isas.push_back(isa_of_name(isa));
   }
   settings.instanced = options.instanced;
+  settings.motion = options.motion;
   settings.build = options.pipeline.build_options(options.bvh_width);
   for (const std::string& text : options.parameters) {
     settings.build.parameters.push_back(parse_parameter(text));
@@ -127,6 +128,9 @@ int run(const BenchOptions& options) {
       (options.peer == "binary" || !options.pipelines.empty() || !options.structures.empty())) {
     throw UsageError(
         "--instanced goes with --vs embree or none, and with neither --pipelines nor --structures");
+  }
+  if (!options.motion.empty() && (options.peer == "binary" || options.asks_for_table())) {
+    throw UsageError("--motion is for the table of rays, with --vs embree or none");
   }
   if (const std::optional<int> exit_code = run_table(options, settings, scenes)) return *exit_code;
   const std::string peer = peer_name(settings);
@@ -181,6 +185,7 @@ void add_scene_options(CLI::App& command, BenchOptions& options) {
                   "Where the files of the list are")
       ->capture_default_str();
   add_instanced_option(command, options.instanced);
+  add_motion_option(command, options.motion);
   add_view_options(command, options.view);
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <tuple>
+#include <utility>
 
 #include "kiwami/commands.h"
 #include "kiwami/direct_light.h"
@@ -13,6 +16,7 @@
 #include "kiwami/view_options.h"
 #include "measure/camera.h"
 #include "scene/kiwami_reader.h"
+#include "scene/motion.h"
 #include "scene/procedural.h"
 
 namespace kiwami::tools {
@@ -33,6 +37,8 @@ struct RenderOptions {
   TraceOptions trace;
   PipelineOptions pipeline;
   uint32_t leaf_mask_level = 0;
+  std::string motion;  ///< empty: everything rests
+  std::string shutter = "0,1";
 };
 
 RenderMode parse_mode(const std::string& name) {
@@ -40,6 +46,21 @@ RenderMode parse_mode(const std::string& name) {
   if (name == "ao") return RenderMode::kAmbientOcclusion;
   if (name == "path") return RenderMode::kPath;
   throw UsageError("--mode is '" + name + "', expected normals, ao or path");
+}
+
+/// When the shutter opens and when it closes.
+std::pair<float, float> parse_shutter(const std::string& text) {
+  const std::vector<std::string> words = split_words("--shutter", text);
+  float times[2] = {0.0f, -1.0f};
+  for (size_t i = 0; i < std::min<size_t>(words.size(), 2); ++i) {
+    const char* const end = words[i].data() + words[i].size();
+    const auto [stop, error] = std::from_chars(words[i].data(), end, times[i]);
+    if (error != std::errc() || stop != end) times[1] = -1.0f;
+  }
+  if (words.size() != 2 || !(0.0f <= times[0] && times[0] <= times[1] && times[1] <= 1.0f)) {
+    throw UsageError("--shutter is '" + text + "', expected two times from 0 to 1 that rise");
+  }
+  return {times[0], times[1]};
 }
 
 /// Syntax errors of options that need the scene are found before the scene is read.
@@ -57,6 +78,10 @@ void check_options(const RenderOptions& options) {
   if (!options.lights.empty() && options.instanced) {
     throw UsageError("--lights goes without --instanced");
   }
+  if (!options.motion.empty() && (!options.lights.empty() || options.leaf_mask_level != 0)) {
+    throw UsageError("--motion goes with neither --lights nor --leaf-mask");
+  }
+  parse_shutter(options.shutter);
   check_view_options(options.view);
   check_image_path("--output", options.output);
 }
@@ -109,7 +134,8 @@ void run_render(const RenderOptions& options) {
   const Size size = parse_size("--size", options.size);
   const Device device = options.trace.make_device();
   const SceneFile loaded = load_scene(options.scene);
-  const SceneFile file = options.instanced ? loaded : flatten(loaded);
+  SceneFile file = options.instanced ? loaded : flatten(loaded);
+  if (!options.motion.empty()) set_in_motion(file, options.motion);
   const std::unique_ptr<BuiltScene> built = make_scene(options, device, file);
   const BuiltScene& scene = *built;
   print_build(file, device, scene.info());
@@ -124,6 +150,9 @@ void run_render(const RenderOptions& options) {
   settings.occlusion_radius = 0.1f * box.diagonal();
   settings.up = view.up;
   settings.threads = device.info().thread_count;
+  if (!options.motion.empty()) {
+    std::tie(settings.shutter_open, settings.shutter_close) = parse_shutter(options.shutter);
+  }
   Tracing tracing(scene);
   const std::unique_ptr<DirectLight> light = make_light(options, device, file);
   if (light) {
@@ -190,6 +219,11 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->add_option("--light-roughness", options->light_roughness,
                    "Surfaces are glossy: alpha of their GGX distribution; 0: they are diffuse")
       ->check(finite_number(0.0, 1.0))
+      ->capture_default_str();
+  add_motion_option(*command, options->motion);
+  command
+      ->add_option("--shutter", options->shutter,
+                   "With --motion: when the shutter opens and closes, from 0 to 1")
       ->capture_default_str();
   add_view_options(*command, options->view);
   add_trace_options(*command, options->trace);

@@ -78,6 +78,12 @@ void add_instanced_option(CLI::App& command, bool& instanced) {
                    "instances; by default it is flattened to triangles");
 }
 
+void add_motion_option(CLI::App& command, std::string& motion) {
+  command.add_option("--motion", motion,
+                     "Sets the scene in motion: meshes (a wave moves their vertices), instances "
+                     "(each turns and moves; with --instanced), or the file of a second keyframe");
+}
+
 BuildOptions PipelineOptions::build_options(uint32_t bvh_width) const {
   const auto number = std::find(std::begin(kQualityNames), std::end(kQualityNames), quality);
   BuildOptions options =

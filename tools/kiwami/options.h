@@ -52,6 +52,9 @@ void add_trace_options(CLI::App& command, TraceOptions& options);
 /// Adds --instanced: whether the instances of a scene stay instances.
 void add_instanced_option(CLI::App& command, bool& instanced);
 
+/// Adds --motion: how the scene moves; see scene/motion.h.
+void add_motion_option(CLI::App& command, std::string& motion);
+
 /// Accept a whole number, or a finite number, within bounds; a sentence otherwise.
 CLI::Validator whole_number(uint64_t lowest, uint64_t highest);
 CLI::Validator finite_number(double lowest, double highest);

@@ -103,9 +103,9 @@ class Wavefront {
         sun_cosines_[k] = dot(surface.normal, sky_.sun);
         // A ray whose tmin is beyond its tmax is a miss: no light would come from behind anyway.
         const float tmax = sun_cosines_[k] > 0.0f ? kInfinity : -1.0f;
-        shadow_rays_[k] = make_ray(surface.point, sky_.sun, 0.0f, tmax);
+        shadow_rays_[k] = make_ray(surface.point, sky_.sun, 0.0f, tmax, rays_[k].time);
         const Vec3 direction = cosine_direction(surface.normal, batch_.randoms[i]);
-        rays_[k] = make_ray(surface.point, direction, 0.0f, kInfinity);
+        rays_[k] = make_ray(surface.point, direction, 0.0f, kInfinity, rays_[k].time);
       }
     });
   }

@@ -27,15 +27,17 @@ uint64_t mix(uint64_t x) {
 }
 
 /// The camera rays of sample `sample` of the pixels from `first_pixel` on.
-void start_samples(const Camera& camera, size_t first_pixel, uint32_t sample, size_t threads,
-                   SampleBatch& batch) {
-  parallel_ranges(threads, batch.rays.size(), [&](size_t first, size_t last) {
+void start_samples(const Camera& camera, size_t first_pixel, uint32_t sample,
+                   const RenderSettings& settings, SampleBatch& batch) {
+  const float open = settings.shutter_open, width = settings.shutter_close - open;
+  parallel_ranges(settings.threads, batch.rays.size(), [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
       const size_t pixel = first_pixel + i;
       Random random(mix(uint64_t{pixel} << 32 | sample));
       const float x = static_cast<float>(pixel % camera.width()) + random.uniform();
       const float y = static_cast<float>(pixel / camera.width()) + random.uniform();
       batch.rays[i] = camera.ray(x, y);
+      batch.rays[i].time = width > 0.0f ? open + width * random.uniform() : open;
       batch.randoms[i] = random;
     }
   });
@@ -67,7 +69,7 @@ void shade_occlusion(Tracing& tracing, const RenderSettings& settings, SampleBat
       const size_t i = sources[k];
       const Surface surface = surface_of(batch.rays[i], hits[i]);
       rays[k] = make_ray(surface.point, cosine_direction(surface.normal, batch.randoms[i]), 0.0f,
-                         settings.occlusion_radius);
+                         settings.occlusion_radius, batch.rays[i].time);
     }
   });
   std::vector<uint8_t> occluded(rays.size());
@@ -141,7 +143,7 @@ Image render(Tracing& tracing, const Camera& camera, const RenderSettings& setti
     const size_t count = batch.rays.size();
     std::vector<Vec3> sums(count, Vec3{0, 0, 0});
     for (uint32_t sample = 0; sample < settings.samples_per_pixel; ++sample) {
-      start_samples(camera, first, sample, settings.threads, batch);
+      start_samples(camera, first, sample, settings, batch);
       shade(tracing, settings, batch);
       for (size_t i = 0; i < count; ++i) sums[i] = sums[i] + batch.colors[i];
       samples_done += count;

@@ -19,11 +19,12 @@ class DirectLight;
 struct RenderSettings {
   RenderMode mode = RenderMode::kPath;
   uint32_t samples_per_pixel = 16;
-  uint32_t bounces = 4;                       ///< of a path, at least 1
-  float occlusion_radius = 1.0f;              ///< how far ambient occlusion looks
-  Vec3 up = {0, 1, 0};                        ///< where the sky is
-  const DirectLight* direct_light = nullptr;  ///< of that mode
-  uint32_t threads = 1;                       ///< for shading; the scene's device has its own
+  uint32_t bounces = 4;                             ///< of a path, at least 1
+  float occlusion_radius = 1.0f;                    ///< how far ambient occlusion looks
+  Vec3 up = {0, 1, 0};                              ///< where the sky is
+  const DirectLight* direct_light = nullptr;        ///< of that mode
+  uint32_t threads = 1;                             ///< for shading; the scene's device has its own
+  float shutter_open = 0.0f, shutter_close = 0.0f;  ///< times of samples; equal: one time
 };
 
 /// One sample of each pixel of a batch.

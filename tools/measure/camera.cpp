@@ -58,9 +58,9 @@ View default_view(const SceneFile& scene, const Box& box, float aspect) {
   return scene.view ? *scene.view : fit_view(box, {0, 1, 0}, kDefaultFieldOfView, aspect);
 }
 
-kiwami_ray make_ray(Vec3 origin, Vec3 direction, float tmin, float tmax) {
+kiwami_ray make_ray(Vec3 origin, Vec3 direction, float tmin, float tmax, float time) {
   return {origin.x,    origin.y, origin.z, tmin, direction.x, direction.y,
-          direction.z, tmax,     0.0f,     ~0u,  0,           0};
+          direction.z, tmax,     time,     ~0u,  0,           0};
 }
 
 Camera::Camera(const View& view, uint32_t width, uint32_t height)

@@ -31,7 +31,7 @@ View fit_view(const Box& box, Vec3 up, float vertical_field_of_view, float aspec
 View default_view(const SceneFile& scene, const Box& box, float aspect);
 
 /// A ray from `origin` with the defaults of all other fields.
-kiwami_ray make_ray(Vec3 origin, Vec3 direction, float tmin, float tmax);
+kiwami_ray make_ray(Vec3 origin, Vec3 direction, float tmin, float tmax, float time = 0.0f);
 
 /// A pinhole camera.
 class Camera {

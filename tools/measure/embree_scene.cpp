@@ -15,11 +15,11 @@ bool count_bytes(void* user, ssize_t bytes, bool) {
   return true;
 }
 
-void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, const void* data,
-                 size_t element_bytes, size_t count) {
+void fill_buffer(RTCGeometry geometry, RTCBufferType type, unsigned slot, RTCFormat format,
+                 const void* data, size_t element_bytes, size_t count) {
   if (count == 0) return;
   // Embree pads its own buffers, which its loads beyond the last vertex need.
-  void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, element_bytes, count);
+  void* buffer = rtcSetNewGeometryBuffer(geometry, type, slot, format, element_bytes, count);
   if (buffer == nullptr) throw std::bad_alloc();
   std::memcpy(buffer, data, element_bytes * count);
 }
@@ -59,7 +59,10 @@ void EmbreeScene::build(const SceneFile& file, const EmbreeSettings& settings) {
       attach(shown_.back(), mesh, settings.quality);
       commit(shown_.back());
     }
-    for (const Instance& instance : file.instances) attach(instance);
+    for (size_t i = 0; i < file.instances.size(); ++i) {
+      attach(file.instances[i],
+             file.moved_transforms.empty() ? nullptr : file.moved_transforms[i].data());
+    }
   }
   commit(scene_);
 }
@@ -83,19 +86,26 @@ void EmbreeScene::attach(RTCScene scene, const Mesh& mesh, RTCBuildQuality quali
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   // A scene of low quality takes the builder of each geometry from its own quality.
   rtcSetGeometryBuildQuality(geometry, quality);
-  fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices.data(), 12,
+  if (!mesh.moved.empty()) rtcSetGeometryTimeStepCount(geometry, 2);
+  fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.vertices.data(), 12,
               mesh.vertex_count());
-  fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.indices.data(), 12,
+  fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, 1, RTC_FORMAT_FLOAT3, mesh.moved.data(), 12,
+              mesh.moved.size() / 3);
+  fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 12,
               mesh.triangle_count());
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
 }
 
-void EmbreeScene::attach(const Instance& instance) {
+void EmbreeScene::attach(const Instance& instance, const float* moved_transform) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(geometry, shown_[instance.mesh]);
+  if (moved_transform != nullptr) rtcSetGeometryTimeStepCount(geometry, 2);
   rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, instance.transform.data());
+  if (moved_transform != nullptr) {
+    rtcSetGeometryTransform(geometry, 1, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, moved_transform);
+  }
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);

@@ -42,7 +42,7 @@ class EmbreeScene {
   void build(const SceneFile& file, const EmbreeSettings& settings);
   RTCScene make_scene(const EmbreeSettings& settings);
   void attach(RTCScene scene, const Mesh& mesh, RTCBuildQuality quality);
-  void attach(const Instance& instance);
+  void attach(const Instance& instance, const float* moved_transform);
   void commit(RTCScene scene);
   void release();
 

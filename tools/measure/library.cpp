@@ -5,7 +5,7 @@
 #include <charconv>
 #include <optional>
 
-#include "measure/leaf_mask.h"
+#include "measure/file_geometries.h"
 
 namespace kiwami::tools {
 namespace {
@@ -78,17 +78,6 @@ kiwami_query calling_thread_query() {
   return query;
 }
 
-kiwami_triangle_mesh_desc desc_of(const Mesh& mesh) {
-  kiwami_triangle_mesh_desc desc;
-  throw_on_error(kiwami_triangle_mesh_desc_init(&desc, sizeof desc), nullptr);
-  desc.flags = KIWAMI_MESH_SHARE_BUFFERS;
-  desc.vertices = mesh.vertices.data();
-  desc.vertex_count = mesh.vertex_count();
-  desc.indices = mesh.indices.data();
-  desc.triangle_count = mesh.triangle_count();
-  return desc;
-}
-
 kiwami_scene_info info_of(const kiwami_scene* scene) {
   kiwami_scene_info info{};
   info.struct_size = sizeof info;
@@ -114,39 +103,6 @@ void add_costs(const kiwami_scene_info& shown, kiwami_scene_info& all) {
   all.reference_count += shown.reference_count;
   all.node_fill += shown.node_fill * static_cast<double>(shown.node_count);
   all.leaf_fill += shown.leaf_fill * static_cast<double>(shown.leaf_block_count);
-}
-
-/// The hit as of the flattened file. Normals go by the cofactors: (M b) x (M c) = cof(M) (b x c).
-void move_to_world(const std::vector<Instance>& instances, kiwami_hit& hit) {
-  if (hit.instance_id == KIWAMI_INVALID_ID) return;
-  const auto& m = instances[hit.instance_id].transform;
-  const auto cofactor = [&](size_t i, size_t j) {
-    const size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-    return m[i1 * 4 + j1] * m[i2 * 4 + j2] - m[i1 * 4 + j2] * m[i2 * 4 + j1];
-  };
-  const float x = hit.normal_x, y = hit.normal_y, z = hit.normal_z;
-  const auto row = [&](size_t i) {
-    return cofactor(i, 0) * x + cofactor(i, 1) * y + cofactor(i, 2) * z;
-  };
-  hit.normal_x = row(0);
-  hit.normal_y = row(1);
-  hit.normal_z = row(2);
-  hit.geometry_id = hit.instance_id;
-  hit.instance_id = KIWAMI_INVALID_ID;
-}
-
-/// Puts a leaf in place of each triangle.
-void set_leaf_mask(kiwami_device* device, kiwami_geometry* geometry, const Mesh& mesh,
-                   uint32_t level) {
-  const std::vector<unsigned char> map = leaf_map(level);
-  const std::vector<uint32_t> indices(mesh.triangle_count(), 0);
-  kiwami_opacity_desc opacity;
-  throw_on_error(kiwami_opacity_desc_init(&opacity, sizeof opacity), device);
-  opacity.level = level;
-  opacity.maps = map.data();
-  opacity.map_count = 1;
-  opacity.indices = indices.data();
-  throw_on_error(kiwami_triangle_mesh_set_opacity(geometry, &opacity), device);
 }
 
 /// Holds the reference to a scene's tree.
@@ -234,13 +190,13 @@ void BuiltScene::build(kiwami_device* device, const SceneFile& file, const Build
   scene_ = make_scene(device, options);
   for (const Mesh& mesh : file.meshes) attach(device, scene_, mesh, options.leaf_mask_level);
   info_ = commit(scene_);
+  // What moves has no place in that number.
+  if (file.is_moving()) info_.triangle_count = file.triangle_count() - info_.skipped_count;
 }
 
 void BuiltScene::attach(kiwami_device* device, kiwami_scene* scene, const Mesh& mesh,
                         uint32_t leaf_mask_level) {
-  const kiwami_triangle_mesh_desc desc = desc_of(mesh);
-  kiwami_geometry* geometry = nullptr;
-  throw_on_error(kiwami_triangle_mesh_create(device, &desc, &geometry), device);
+  kiwami_geometry* const geometry = make_geometry(device, mesh);
   geometries_.push_back(geometry);
   if (leaf_mask_level != 0) set_leaf_mask(device, geometry, mesh, leaf_mask_level);
   throw_on_error(kiwami_scene_attach(scene, geometry, nullptr), device);
@@ -256,7 +212,7 @@ void BuiltScene::refit() {
 
 void BuiltScene::build_instances(kiwami_device* device, const SceneFile& file,
                                  const BuildOptions& options) {
-  instances_ = file.instances;
+  has_instances_ = true;
   kiwami_scene_info shown{};
   for (const Mesh& mesh : file.meshes) {
     shown_.push_back(make_scene(device, options));
@@ -264,16 +220,7 @@ void BuiltScene::build_instances(kiwami_device* device, const SceneFile& file,
     add_costs(commit(shown_.back()), shown);
   }
   scene_ = make_scene(device, options);
-  kiwami_instances_desc desc;
-  throw_on_error(kiwami_instances_desc_init(&desc, sizeof desc), device);
-  desc.scenes = shown_.data();
-  desc.scene_count = shown_.size();
-  desc.scene_indices = &instances_[0].mesh;
-  desc.transforms = instances_[0].transform.data();
-  desc.scene_index_stride = desc.transform_stride = sizeof(Instance);
-  desc.count = instances_.size();
-  kiwami_geometry* geometry = nullptr;
-  throw_on_error(kiwami_instances_create(device, &desc, &geometry), device);
+  kiwami_geometry* const geometry = make_instances(device, file, shown_);
   geometries_.push_back(geometry);
   throw_on_error(kiwami_scene_attach(scene_, geometry, nullptr), device);
   info_ = commit(scene_);
@@ -324,8 +271,15 @@ void BuiltScene::own_closest_hits(std::span<const kiwami_ray> rays,
 
 void BuiltScene::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const {
   own_closest_hits(rays, hits);
-  if (instances_.empty()) return;
-  for (kiwami_hit& hit : hits) move_to_world(instances_, hit);
+  if (!has_instances_) return;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].instance_id == KIWAMI_INVALID_ID) continue;
+    std::array<float, 12> matrix;
+    throw_on_error(kiwami_instances_transform(geometries_.back(), hits[i].instance_id, rays[i].time,
+                                              matrix.data()),
+                   nullptr);
+    move_to_world(matrix, hits[i]);
+  }
 }
 
 void BuiltScene::any_hits(std::span<const kiwami_ray> rays, std::span<uint8_t> occluded) const {

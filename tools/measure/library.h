@@ -149,7 +149,7 @@ class BuiltScene : public Tracer {
   std::vector<kiwami_scene*> shown_;  ///< the scenes of instances
   kiwami_scene* scene_ = nullptr;
   std::vector<kiwami_geometry*> geometries_;
-  std::vector<Instance> instances_;
+  bool has_instances_ = false;  ///< which are the last geometry
   kiwami_scene_info info_{};
   double node_cost_ = 1.0;
   double leaf_cost_ = 1.0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene_file.h"
 
+#include <algorithm>
+
 #include "scene/binary_readers.h"
 #include "scene/byte_reader.h"
 #include "scene/kiwami_reader.h"
@@ -40,6 +42,7 @@ std::string format_extension(const fs::path& path) {
 
 Mesh transformed(const Mesh& mesh, const std::array<float, 12>& m) {
   Mesh moved = mesh;
+  moved.moved.clear();
   for (size_t i = 0; i + 2 < moved.vertices.size(); i += 3) {
     const float x = mesh.vertices[i];
     const float y = mesh.vertices[i + 1];
@@ -62,6 +65,12 @@ uint64_t SceneFile::triangle_count() const {
     for (const Instance& instance : instances) count += meshes[instance.mesh].triangle_count();
   }
   return count;
+}
+
+bool SceneFile::is_moving() const {
+  return !moved_transforms.empty() ||
+         std::any_of(meshes.begin(), meshes.end(),
+                     [](const Mesh& mesh) { return !mesh.moved.empty(); });
 }
 
 SceneFile load_scene(const fs::path& path) {

@@ -24,6 +24,7 @@ struct Mesh {
   std::string name;
   std::vector<float> vertices;
   std::vector<uint32_t> indices;
+  std::vector<float> moved = {};  ///< the vertices at time 1, the others being at 0; empty: at rest
 
   uint64_t vertex_count() const { return vertices.size() / 3; }
   uint64_t triangle_count() const { return indices.size() / 3; }
@@ -48,9 +49,13 @@ struct SceneFile {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::optional<View> view;  ///< only procedural scenes suggest one
+  /// Of the instances at time 1, the others being at 0; empty: at rest.
+  std::vector<std::array<float, 12>> moved_transforms = {};
 
   /// Triangles in the world: those of a mesh count once for each of its instances.
   uint64_t triangle_count() const;
+  /// See scene/motion.h.
+  bool is_moving() const;
 };
 
 /// Reads an .obj, .tri or .ins file, each also with .gz, or a .kiwami file, or makes a procedural
@@ -58,7 +63,8 @@ struct SceneFile {
 /// SceneError.
 SceneFile load_scene(const std::filesystem::path& path);
 
-/// The same world without instances: mesh i of the result is instance i with its vertices moved.
+/// The same world without instances: mesh i of the result is instance i with its vertices moved, as
+/// it is at time 0.
 /// Throws SceneError when it has more triangles than the library takes.
 SceneFile flatten(const SceneFile& scene);
 
