@@ -110,9 +110,14 @@ Affine product_of(const Affine& a, const Affine& b) {
   return product;
 }
 
-/// The greatest condition number of what lies between two maps; kMaxCondition: it is as great, or
-/// not known.
-double greatest_condition(const Affine& start, const Affine& end) {
+/// Of what lies between two maps: the greatest condition number, and the greatest norm of an
+/// inverse. kMaxCondition: it is as great, or not known.
+struct InverseBound {
+  double condition, norm;
+};
+
+InverseBound bound_inverses(const Affine& start, const Affine& end) {
+  constexpr InverseBound unknown{kMaxCondition, std::numeric_limits<double>::infinity()};
   struct Interval {
     double begin, end;
   };
@@ -120,9 +125,9 @@ double greatest_condition(const Affine& start, const Affine& end) {
   Interval stack[kMaxDepth + 1] = {{0.0, 1.0}};
   size_t depth = 1;
   const Affine difference = difference_of(start, end);
-  double greatest = 1.0;
+  InverseBound greatest{1.0, 0.0};
   for (int i = 0; depth != 0; ++i) {
-    if (i == kMaxIntervals) return kMaxCondition;
+    if (i == kMaxIntervals) return unknown;
     const Interval interval = stack[--depth];
     const double middle = 0.5 * (interval.begin + interval.end);
     const Affine map = moved(start, difference, middle), inverse = inverse_of(map);
@@ -130,18 +135,20 @@ double greatest_condition(const Affine& start, const Affine& end) {
     const double change = half * std::min(row_sum_norm(product_of(difference, inverse)),
                                           row_sum_norm(product_of(inverse, difference)));
     const double norm = row_sum_norm(map) + half * row_sum_norm(difference);
-    const double condition = norm * row_sum_norm(inverse);
+    const double inverse_norm = row_sum_norm(inverse);
     // Comparisons with NaN are false.
-    if (!(condition < kMaxCondition)) return kMaxCondition;
+    if (!(norm * inverse_norm < kMaxCondition)) return unknown;
     if (change <= 0.25) {
-      greatest = std::max(greatest, condition / (1.0 - change));
+      greatest.norm = std::max(greatest.norm, inverse_norm / (1.0 - change));
+      greatest.condition = std::max(greatest.condition, norm * inverse_norm / (1.0 - change));
       continue;
     }
-    if (depth + 2 > kMaxDepth) return kMaxCondition;
+    if (depth + 2 > kMaxDepth) return unknown;
     stack[depth++] = {middle, interval.end};
     stack[depth++] = {interval.begin, middle};
   }
-  return std::min(greatest, kMaxCondition);
+  greatest.condition = std::min(greatest.condition, kMaxCondition);
+  return greatest;
 }
 
 /// The part of a step that is interpolated linearly: all of it, or what goes before the rotation.
@@ -201,7 +208,8 @@ HitError HitError::through(const float (&inverse)[4][3], const HitError& inner,
 
 MotionLimits MotionLimits::of(const float* steps, uint32_t segment_count, TransformFormat format) {
   const uint32_t size = step_size_of(format);
-  MotionLimits limits{1.0, 0.0, 0.0};
+  MotionLimits limits{1.0, 0.0, 0.0, false};
+  double inverse_norm = 0.0;
   Affine before{};
   for (uint32_t step = 0; step <= segment_count; ++step) {
     const float* const at = steps + size_t{step} * size;
@@ -214,12 +222,24 @@ MotionLimits MotionLimits::of(const float* steps, uint32_t segment_count, Transf
     }
     limits.forward_norm = std::max(limits.forward_norm, norm * kSlightlyMore);
     limits.shift = std::max(limits.shift, shift * kSlightlyMore);
-    if (step != 0) limits.condition = std::max(limits.condition, greatest_condition(before, map));
+    if (step != 0) {
+      const InverseBound bound = bound_inverses(before, map);
+      limits.condition = std::max(limits.condition, bound.condition);
+      inverse_norm = std::max(inverse_norm, bound.norm);
+    }
     before = map;
   }
   // Of a rotation and its inverse.
-  if (format == TransformFormat::kQuaternion) limits.condition *= kRotationNorm * kRotationNorm;
+  if (format == TransformFormat::kQuaternion) {
+    limits.condition *= kRotationNorm * kRotationNorm;
+    inverse_norm *= kRotationNorm;
+  }
   limits.condition = std::min(kConditionSafety * limits.condition, kMaxCondition);
+  // Far from all limits. The scales are bounded from below by each other: a norm is at least 1 over
+  // that of the inverse.
+  limits.is_regular = limits.condition <= kMaxCondition / 4 &&
+                      limits.forward_norm <= kMaxScale / 4 && inverse_norm <= kMaxScale / 4 &&
+                      limits.shift <= kMaxScale;
   return limits;
 }
 
@@ -233,9 +253,12 @@ HitError MotionLimits::error_through(const HitError& inner, const Bounds& bounds
   return error;
 }
 
+double MotionLimits::reach(const Bounds& inner) const {
+  return forward_norm * greatest_coordinate(inner) + shift;
+}
+
 double MotionLimits::rounding(const Bounds& inner) const {
-  const double reach = forward_norm * greatest_coordinate(inner);
-  return 1.1 * kRoundingUnit * condition * (reach + 2.0 * shift) + kMotionError * (reach + shift) +
+  return 1.1 * kRoundingUnit * condition * (reach(inner) + shift) + kMotionError * reach(inner) +
          kLeastError;
 }
 

@@ -34,12 +34,15 @@ struct MotionLimits {
   double condition;     ///< of the maps that rays meet: at most kMaxCondition
   double forward_norm;  ///< of the matrices, by row sums
   double shift;         ///< the greatest absolute coordinate of a matrix's last column
+  bool is_regular;      ///< whether invert_for_rays takes the matrices of all times
 
   /// Of steps as kernels have them, one after the other.
   static MotionLimits of(const float* steps, uint32_t segment_count, TransformFormat format);
   /// As HitError::through, of all times.
   HitError error_through(const HitError& inner, const Bounds& bounds) const;
-  /// How far from where the motion of its matrix has a point of inner, the box of a scene, it is
+  /// The greatest absolute coordinate of a point of inner, the box of a scene, outside.
+  double reach(const Bounds& inner) const;
+  /// How far from where the motion of its matrix has a point of inner it is
   /// shown: the rounding of the matrix, and what the rounded inverse stands for.
   double rounding(const Bounds& inner) const;
 };

@@ -41,6 +41,37 @@ void extend_at(Bounds& box, const MovingMeshView& mesh, uint32_t primitive, doub
   }
 }
 
+/// During a part of an own segment of the mesh, with room for the rounding of its ends.
+LinearBounds divided_bounds(const MovingMeshView& mesh, uint32_t primitive, uint32_t segment,
+                            uint32_t division) {
+  LinearBounds bounds;
+  extend_at(bounds.start, mesh, primitive, static_cast<double>(segment) / division);
+  extend_at(bounds.end, mesh, primitive, (static_cast<double>(segment) + 1.0) / division);
+  // At an end the mesh may already be, or still, in the own segment beside.
+  const uint32_t own = segment / division, first = own == 0 ? 0 : own - 1;
+  const uint32_t last = std::min(own + 2, mesh.time.segment_count);
+  Vec3f before[3], after[3];
+  corners_at(mesh, primitive, first, before);
+  double farthest = 0.0;
+  for (uint32_t step = first + 1; step <= last; ++step) {
+    corners_at(mesh, primitive, step, after);
+    for (int k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        farthest = std::max(farthest, std::fabs(double{after[k][axis]} - before[k][axis]));
+      }
+      before[k] = after[k];
+    }
+  }
+  const double slack = place_rounding(mesh.time) * farthest;
+  for (Bounds* box : {&bounds.start, &bounds.end}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box->lower[axis] = round_down(box->lower[axis] - slack);
+      box->upper[axis] = round_up(box->upper[axis] + slack);
+    }
+  }
+  return bounds;
+}
+
 /// Where the triangle is at any time of a segment of other steps.
 Bounds swept_box(const MovingMeshView& mesh, uint32_t primitive, const TimeSteps& steps,
                  uint32_t segment) {
@@ -68,8 +99,10 @@ void pad(Bounds& box, const Bounds& extent) {
   }
 }
 
-bool are_same(const TimeSteps& a, const TimeSteps& b) {
-  return a.begin == b.begin && a.end == b.end && a.segment_count == b.segment_count;
+uint32_t division_of(const TimeSteps& own, const TimeSteps& steps) {
+  const bool divides = own.begin == steps.begin && own.end == steps.end &&
+                       steps.segment_count % own.segment_count == 0;
+  return divides ? steps.segment_count / own.segment_count : 0;
 }
 
 bool places_during(const TimeSteps& own, const TimeSteps& steps, uint32_t segment,
@@ -134,8 +167,11 @@ void corners_at(const MovingMeshView& mesh, uint32_t primitive, const TimePlace&
 LinearBounds linear_bounds_of(const MovingMeshView& mesh, uint32_t primitive,
                               const TimeSteps& steps, uint32_t segment, const Bounds& extent) {
   LinearBounds bounds;
-  if (are_same(mesh.time, steps)) {
+  const uint32_t division = division_of(mesh.time, steps);
+  if (division == 1) {
     bounds = {box_at(mesh, primitive, segment), box_at(mesh, primitive, segment + 1)};
+  } else if (division != 0) {
+    bounds = divided_bounds(mesh, primitive, segment, division);
   } else {
     bounds.start = bounds.end = swept_box(mesh, primitive, steps, segment);
     if (bounds.start.is_empty()) return bounds;

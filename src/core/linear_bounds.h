@@ -22,7 +22,13 @@ struct LinearBounds {
 /// extent.
 void pad(Bounds& box, const Bounds& extent);
 
-bool are_same(const TimeSteps& a, const TimeSteps& b);
+/// Into how many segments each of own ones is divided by steps; 0: they are others.
+uint32_t division_of(const TimeSteps& own, const TimeSteps& steps);
+
+/// How far apart the places of one time among own steps and among those that divide them may be, as
+/// a part of an own segment: the quotient is the same, and each of two products of at most
+/// segment_count is rounded once.
+inline double place_rounding(const TimeSteps& own) { return own.segment_count * 0x1p-22; }
 
 /// Places among some steps, 0 to segment_count.
 struct PlaceRange {

@@ -101,9 +101,8 @@ void MotionTree::build(const AttachedGeometry* geometries, size_t count, const P
   data_.scene.range_count = static_cast<uint32_t>(ranges_.size());
   Array<TimeSteps> times(plan.memory, meshes_.size());
   for (size_t i = 0; i < meshes_.size(); ++i) times[i] = meshes_[i].time;
-  time_ = common_steps(times.data(), times.size());
   Array<BuildPrimitive> boxes = collect(plan.memory, plan.parallel, extent_);
-  tree_.build(std::move(boxes), extent_, time_, *this, plan);
+  tree_.build(std::move(boxes), extent_, common_steps(times.data(), times.size()), *this, plan);
   data_.boxes = tree_.boxes();
   if (plan.parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     validate(plan.memory, plan.parallel);
@@ -136,9 +135,9 @@ Array<BuildPrimitive> MotionTree::collect(Memory& memory, const Parallel& parall
   return boxes;
 }
 
-LinearBounds MotionTree::during(uint32_t id, uint32_t segment) const {
+LinearBounds MotionTree::during(uint32_t id, const TimeSteps& steps, uint32_t segment) const {
   const MovingMeshView& mesh = mesh_of(data_, id);
-  return linear_bounds_of(mesh, id - mesh.first_id, time_, segment, extent_);
+  return linear_bounds_of(mesh, id - mesh.first_id, steps, segment, extent_);
 }
 
 Bounds MotionTree::at(uint32_t id, float time) const {

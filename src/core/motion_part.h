@@ -32,12 +32,11 @@ class MotionTree final : private MovingSource {
   void number(const AttachedGeometry* geometries, size_t count, Memory& memory);
   /// The mean boxes of those triangles that can be hit; extent becomes the box of all at all times.
   Array<BuildPrimitive> collect(Memory& memory, const Parallel& parallel, Bounds& extent) const;
-  LinearBounds during(uint32_t id, uint32_t segment) const override;
+  LinearBounds during(uint32_t id, const TimeSteps& steps, uint32_t segment) const override;
   Bounds at(uint32_t id, float time) const override;
 
   Array<MovingMeshView> meshes_;
   Array<GeometryRange> ranges_;
-  TimeSteps time_{};
   Bounds extent_ = Bounds::empty();  ///< of all triangles at all times
   MotionPart data_{};
   size_t numbered_count_ = 0;

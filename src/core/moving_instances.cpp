@@ -60,6 +60,13 @@ class MovingInstances::Source final : public MovingSource {
     return error;
   }
 
+  /// Whether all of an array are at all times; what shows nothing is not asked.
+  bool is_regular(uint32_t array) const {
+    const Entry* const first = entries_.data() + places_[array];
+    return std::all_of(first, first + moving_.arrays_[array].count,
+                       [](const Entry& entry) { return entry.is_regular; });
+  }
+
   /// The mean boxes of those that show something, and the box of all boxes.
   Array<BuildPrimitive> boxes(Memory& memory, Bounds& extent) const {
     Array<BuildPrimitive> boxes(memory, entries_.size());
@@ -73,25 +80,29 @@ class MovingInstances::Source final : public MovingSource {
         const uint32_t number = array.first + k;
         const Bounds mean = mean_box(array, number, scene_of(number).bounds());
         boxes[used++] = {mean.lower, number, mean.upper, 0};
-        extent.extend(widened(entry.bounds, margin_of(entry)));
+        extent.extend(widened(entry.bounds, margin_of(entry) + slack_of(array, entry)));
       }
     }
     boxes.shrink(used);
     return boxes;
   }
 
-  LinearBounds during(uint32_t number, uint32_t segment) const override {
+  LinearBounds during(uint32_t number, const TimeSteps& steps, uint32_t segment) const override {
     LinearBounds bounds;
     const MovingArray& array = array_of_number(number);
     const Entry& entry = entry_of(array, number);
     if (entry.bounds.is_empty()) return bounds;
     const Bounds inner = scene_of(number).bounds();
-    if (are_same(array.time, moving_.time_)) {
-      const double margin = margin_of(entry) + bow(array, number, segment, inner);
-      bounds.start = image_at(array, number, segment, 0.0, inner, margin);
-      bounds.end = image_at(array, number, segment, 1.0, inner, margin);
+    if (const uint32_t division = division_of(array.time, steps)) {
+      const uint32_t own = segment / division, part = segment % division;
+      // A part of an arc bows as the square of its length.
+      double margin = margin_of(entry) + bow(array, number, own, inner) / (division * division);
+      if (division != 1) margin += slack_of(array, entry);
+      bounds.start =
+          image_at(array, number, own, static_cast<double>(part) / division, inner, margin);
+      bounds.end = image_at(array, number, own, (part + 1.0) / division, inner, margin);
     } else {
-      bounds.start = bounds.end = swept_box(array, number, segment, inner, margin_of(entry));
+      bounds.start = bounds.end = swept_box(array, number, steps, segment, inner, margin_of(entry));
       if (bounds.start.is_empty()) return bounds;
     }
     pad(bounds.start, moving_.tree_.tree().bounds);
@@ -114,7 +125,8 @@ class MovingInstances::Source final : public MovingSource {
   struct Entry {
     Bounds bounds;  ///< at all times; empty: it shows nothing
     HitError error;
-    double rounding;
+    double rounding, reach;  ///< see MotionLimits
+    bool is_regular;
   };
 
   const MovingArray& array_of_number(uint32_t number) const {
@@ -129,13 +141,15 @@ class MovingInstances::Source final : public MovingSource {
   }
 
   Entry measure(const MovingArray& array, uint32_t number) const {
-    Entry entry{Bounds::empty(), {}, 0.0};
+    Entry entry{Bounds::empty(), {}, 0.0, 0.0, true};
     const CommittedScene& scene = scene_of(number);
     const Bounds inner = scene.bounds();
     if (inner.is_empty()) return entry;
     const MotionLimits limits =
         MotionLimits::of(steps_of(array, number, 0), array.time.segment_count, array.format);
     entry.rounding = limits.rounding(inner);
+    entry.reach = limits.reach(inner);
+    entry.is_regular = limits.is_regular;
     for (uint32_t segment = 0; segment < array.time.segment_count; ++segment) {
       const double margin = entry.rounding + bow(array, number, segment, inner);
       entry.bounds.extend(image_at(array, number, segment, 0.0, inner, margin));
@@ -148,6 +162,11 @@ class MovingInstances::Source final : public MovingSource {
   /// What boxes from the matrices of steps lack, but for the bow.
   double margin_of(const Entry& entry) const {
     return entry.rounding + entry.error.margin(double{moving_.far_origin_});
+  }
+
+  /// What a place may be off by where segments are divided.
+  static double slack_of(const MovingArray& array, const Entry& entry) {
+    return place_rounding(array.time) * 2.0 * entry.reach;
   }
 
   static double bow(const MovingArray& array, uint32_t number, uint32_t segment,
@@ -190,12 +209,12 @@ class MovingInstances::Source final : public MovingSource {
     return mean;
   }
 
-  /// Where it is at any time of a segment of the tree's steps, which are not its own.
-  Bounds swept_box(const MovingArray& array, uint32_t number, uint32_t segment, const Bounds& inner,
-                   double margin) const {
+  /// Where it is at any time of a segment of steps that have nothing to do with its own.
+  static Bounds swept_box(const MovingArray& array, uint32_t number, const TimeSteps& steps,
+                          uint32_t segment, const Bounds& inner, double margin) {
     Bounds box = Bounds::empty();
     PlaceRange range;
-    if (!places_during(array.time, moving_.time_, segment, range)) return box;
+    if (!places_during(array.time, steps, segment, range)) return box;
     const uint32_t last_segment = array.time.segment_count - 1;
     const auto first = std::min(static_cast<uint32_t>(range.first), last_segment);
     const auto last = std::min(static_cast<uint32_t>(range.last), last_segment);
@@ -230,7 +249,8 @@ bool MovingInstances::add(const Instances& instances, uint32_t first, const Para
       return;
     }
   });
-  arrays_[array_count_++] = {steps, instances.time(), instances.format(), first, instances.count()};
+  arrays_[array_count_++] = {steps, instances.time(),  instances.format(),
+                             first, instances.count(), 0};
   used_floats_ += floats;
   return !is_faulty.load();
 }
@@ -244,15 +264,15 @@ void MovingInstances::build(const InstancePart& all, CommittedScene* const* scen
   data_.array_count = array_count_;
   Array<TimeSteps> times(plan.memory, array_count_);
   for (uint32_t i = 0; i < array_count_; ++i) times[i] = arrays_[i].time;
-  time_ = common_steps(times.data(), times.size());
   const Source source(*this, scenes, plan.memory, plan.parallel);
+  for (uint32_t i = 0; i < array_count_; ++i) arrays_[i].is_regular = source.is_regular(i) ? 1 : 0;
   bounds_ = source.bounds();
   error_ = source.error();
   if (bounds_.is_empty()) return;
   far_origin_ = static_cast<float>(2.0 * greatest_coordinate(bounds_));
   Bounds extent;
   Array<BuildPrimitive> boxes = source.boxes(plan.memory, extent);
-  tree_.build(std::move(boxes), extent, time_, source, plan);
+  tree_.build(std::move(boxes), extent, common_steps(times.data(), times.size()), source, plan);
   data_.boxes = tree_.boxes();
   if (plan.parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     validate(scenes, plan.memory, plan.parallel);

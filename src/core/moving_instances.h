@@ -55,7 +55,6 @@ class MovingInstances {
   Array<float> steps_;  ///< of one array after the other
   uint32_t array_count_ = 0;
   size_t used_floats_ = 0;
-  TimeSteps time_{};
   MovingTree tree_;
   MovingInstancePart data_{};
   Bounds bounds_ = Bounds::empty();

@@ -14,14 +14,33 @@ namespace {
 /// Bounds of a slot that nothing is in during a segment: they stay finite at any time between.
 constexpr float kUnused = 0x1p100f;
 constexpr uint32_t kMaxSegments = KIWAMI_MAX_TIME_STEPS - 1;
+/// Short segments are not divided: little would be gained, and each try takes time.
+constexpr uint32_t kMaxDividedSegments = 16;
+/// Segments are divided where the boxes get smaller than this part of what they were.
+constexpr double kWorthwhile = 0.9;
+
+/// A box at a part of the way through its segment; empty for an unused slot.
+template <int N>
+Bounds box_at(const MotionBounds<N>& node, uint32_t slot, float fraction) {
+  Bounds box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = [&](int side) {
+      return (1.0f - fraction) * node.bounds[0][axis][side][slot] +
+             fraction * node.bounds[1][axis][side][slot];
+    };
+    box.lower[axis] = at(0);
+    box.upper[axis] = at(1);
+  }
+  return box;
+}
 
 /// Walks a tree from its leaves up, for one segment of time.
 template <int N>
 class BoundsFiller {
  public:
-  BoundsFiller(const WideTree& tree, const MovingSource& source, uint32_t segment,
-               MotionBounds<N>* bounds)
-      : tree_(tree), source_(source), segment_(segment), bounds_(bounds) {}
+  BoundsFiller(const WideTree& tree, const MovingSource& source, const TimeSteps& steps,
+               uint32_t segment, MotionBounds<N>* bounds)
+      : tree_(tree), source_(source), steps_(steps), segment_(segment), bounds_(bounds) {}
 
   /// What is below a reference; writes the bounds of all nodes below.
   LinearBounds fill(ChildReference reference) {
@@ -30,7 +49,7 @@ class BoundsFiller {
       const uint32_t* ids = tree_.leaf_ids(tree_.number_of(reference));
       for (uint32_t lane = 0; lane < N; ++lane) {
         if (((reference.mask() >> lane) & 1u) != 0)
-          below.extend(source_.during(ids[lane], segment_));
+          below.extend(source_.during(ids[lane], steps_, segment_));
       }
       return below;
     }
@@ -72,6 +91,7 @@ class BoundsFiller {
 
   const WideTree& tree_;
   const MovingSource& source_;
+  const TimeSteps& steps_;
   uint32_t segment_;
   MotionBounds<N>* bounds_;
 };
@@ -106,17 +126,13 @@ class BoundsChecker {
     const uint64_t number = tree_.number_of(node);
     const Bounds below = check(tree_.nodes<N>()[number].child[slot]);
     if (below.is_empty()) return below;
-    const auto& bounds = reinterpret_cast<const MotionBounds<N>*>(
-                             boxes_.bounds)[place_.segment * boxes_.node_count + number]
-                             .bounds;
-    const float f = place_.fraction;
+    const auto* const bounds = reinterpret_cast<const MotionBounds<N>*>(boxes_.bounds);
+    const Bounds box =
+        box_at<N>(bounds[place_.segment * boxes_.node_count + number], slot, place_.fraction);
     for (int axis = 0; axis < 3; ++axis) {
-      const auto at = [&](int side) {
-        return (1.0f - f) * bounds[0][axis][side][slot] + f * bounds[1][axis][side][slot];
-      };
       const float centre = tree_.view.centre[axis];
-      if (at(0) <= subtract_down(below.lower[axis], centre) &&
-          subtract_up(below.upper[axis], centre) <= at(1)) {
+      if (box.lower[axis] <= subtract_down(below.lower[axis], centre) &&
+          subtract_up(below.upper[axis], centre) <= box.upper[axis]) {
         continue;
       }
       throw Error(KIWAMI_ERROR_VALIDATION,
@@ -156,9 +172,49 @@ void MovingTree::build(Array<BuildPrimitive> boxes, const Bounds& extent, const 
   tree_ = build_part_tree(std::move(boxes), plan);
   tree_.bounds = extent;
   time_ = time;
-  if (plan.width == 4) fill<4>(source, plan.memory, plan.parallel);
-  if (plan.width == 8) fill<8>(source, plan.memory, plan.parallel);
-  if (plan.width == 16) fill<16>(source, plan.memory, plan.parallel);
+  if (plan.width == 4) bound<4>(source, plan.memory, plan.parallel);
+  if (plan.width == 8) bound<8>(source, plan.memory, plan.parallel);
+  if (plan.width == 16) bound<16>(source, plan.memory, plan.parallel);
+}
+
+template <int N>
+void MovingTree::bound(const MovingSource& source, Memory& memory, const Parallel& parallel) {
+  fill<N>(source, memory, parallel);
+  double area = mean_area<N>(memory, parallel);
+  while (area > 0.0 && 2 * time_.segment_count <= kMaxDividedSegments) {
+    Array<unsigned char> before = std::move(bounds_);
+    time_.segment_count *= 2;
+    fill<N>(source, memory, parallel);
+    const double divided = mean_area<N>(memory, parallel);
+    if (divided > kWorthwhile * area) {
+      bounds_ = std::move(before);
+      time_.segment_count /= 2;
+      return;
+    }
+    area = divided;
+  }
+}
+
+/// The sum of the areas of all boxes, on average over time.
+template <int N>
+double MovingTree::mean_area(Memory& memory, const Parallel& parallel) const {
+  const uint64_t node_count = tree_.tree.node_count;
+  const auto* const bounds = reinterpret_cast<const MotionBounds<N>*>(bounds_.data());
+  Array<double> sums(memory, time_.segment_count);
+  parallel.for_each(time_.segment_count, [&](size_t segment) {
+    double sum = 0.0;
+    for (uint64_t node = 0; node < node_count; ++node) {
+      for (uint32_t slot = 0; slot < N; ++slot) {
+        for (const float f : {1.0f / 6.0f, 0.5f, 5.0f / 6.0f}) {
+          sum += double{box_at<N>(bounds[segment * node_count + node], slot, f).half_area()};
+        }
+      }
+    }
+    sums[segment] = sum;
+  });
+  double all = 0.0;
+  for (const double sum : sums) all += sum;
+  return all / time_.segment_count;
 }
 
 template <int N>
@@ -177,7 +233,7 @@ void MovingTree::fill(const MovingSource& source, Memory& memory, const Parallel
     const double lower = tree_.bounds.lower[axis], upper = tree_.bounds.upper[axis];
     const double reach = std::max(std::fabs(lower - centre), std::fabs(upper - centre));
     const double greatest = std::max(std::fabs(lower), std::fabs(upper));
-    tree.view.greatest_bound[axis] = round_up(reach + 0x1p-20 * (greatest + (upper - lower)));
+    tree.view.greatest_bound[axis] = round_up(reach + 0x1p-18 * (greatest + (upper - lower)));
   }
   if (root.is_leaf()) return;
   parallel.for_blocks(time_.segment_count * node_count, 1024, [&](size_t begin, size_t end) {
@@ -188,7 +244,7 @@ void MovingTree::fill(const MovingSource& source, Memory& memory, const Parallel
   parallel.for_each(size_t{N} * time_.segment_count, [&](size_t task) {
     const auto slot = static_cast<uint32_t>(task % N), segment = static_cast<uint32_t>(task / N);
     if (((root.mask() >> slot) & 1u) == 0) return;
-    BoundsFiller<N>(tree, source, segment, bounds + segment * node_count)
+    BoundsFiller<N>(tree, source, time_, segment, bounds + segment * node_count)
         .fill_slot(root, slot, node.child[slot]);
   });
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Trees over what moves: of each node the boxes at the start and at the end of every segment of
-// time.
+// time. Where steps of what moves are so far apart that boxes between them are much larger than what
+// they hold, segments are divided: the time splits of S. Woop, A. Afra, C. Benthin, "STBVH: A
+// Spatial-Temporal BVH for Efficient Multi-Segment Motion Blur", HPG 2017. It departs from that in
+// that all of a tree is divided, by the mean area of its boxes, and the nodes stay the same.
 #pragma once
 
 #include "core/linear_bounds.h"
@@ -12,9 +15,9 @@ namespace kiwami {
 /// Where the primitives of a moving tree are.
 class MovingSource {
  public:
-  /// During a segment of the tree's steps: boxes that move linearly around the primitive, with room
+  /// During a segment of some steps: boxes that move linearly around the primitive, with room
   /// for the rounding of what is interpolated. Empty where it does not exist then.
-  virtual LinearBounds during(uint32_t id, uint32_t segment) const = 0;
+  virtual LinearBounds during(uint32_t id, const TimeSteps& steps, uint32_t segment) const = 0;
   /// At a time; empty where it does not exist then. For checks.
   virtual Bounds at(uint32_t id, float time) const = 0;
 
@@ -29,8 +32,8 @@ class MovingTree {
   MovingTree(const MovingTree&) = delete;
   MovingTree& operator=(const MovingTree&) = delete;
 
-  /// Builds over boxes of no time in particular, by rising id. Extent holds all primitives at all
-  /// times. Throws Error.
+  /// Builds over boxes of no time in particular, by rising id, with boxes at these steps, or more
+  /// of them. Extent holds all primitives at all times. Throws Error.
   void build(Array<BuildPrimitive> boxes, const Bounds& extent, const TimeSteps& time,
              const MovingSource& source, const PartPlan& plan);
 
@@ -49,7 +52,11 @@ class MovingTree {
 
  private:
   template <int N>
+  void bound(const MovingSource& source, Memory& memory, const Parallel& parallel);
+  template <int N>
   void fill(const MovingSource& source, Memory& memory, const Parallel& parallel);
+  template <int N>
+  double mean_area(Memory& memory, const Parallel& parallel) const;
   template <int N>
   void check(const MovingSource& source, const Parallel& parallel) const;
 

@@ -35,9 +35,12 @@ inline void set_up_for_part(const UnalignedRay& ray, const ScenePart& part, Read
 // Not inlined: it stands in each query.
 __attribute__((noinline)) bool freeze(const MovingInstancePart& part, uint32_t number, float time,
                                       InstanceRecord& record) {
+  const MovingArray& array = array_of(part.arrays, part.array_count, number);
   float rows[12];
-  return matrix_at(array_of(part.arrays, part.array_count, number), number, time, rows) &&
-         invert_for_rays(rows, record.column);
+  if (!matrix_at(array, number, time, rows)) return false;
+  if (!array.is_regular) return invert_for_rays(rows, record.column);
+  invert_regular(rows, record.column);
+  return true;
 }
 
 /// The ray in the space of an instanced scene. Not normalised: a distance stays the same number.

@@ -7,6 +7,7 @@
 // same nodes.
 #pragma once
 
+#include "kernels/leaf-inl.h"
 #include "kernels/node-inl.h"
 #include "wide/motion_part.h"
 
@@ -55,7 +56,8 @@ struct MovingBoxReader {
     return true;
   }
 
-  uint32_t test(ChildReference node, const SlabRay<N>& slabs, float best, vfloat<N>& entry) const {
+  __attribute__((always_inline)) uint32_t test(ChildReference node, const SlabRay<N>& slabs,
+                                               float best, vfloat<N>& entry) const {
     return test_moving_boxes(bounds[node.node_offset() / sizeof(WideNode<N>)], fraction, slabs,
                              best, entry);
   }
@@ -91,23 +93,46 @@ inline void read_corners(const MovingMeshView& mesh, uint32_t primitive, uint32_
   }
 }
 
-/// The triangles of a leaf at a time: those lanes that exist then. The others hold garbage.
+/// The triangles of one mesh, which has indices, at a place in its time.
+template <int N, typename Strides>
+inline void freeze_indexed(const MovingMeshView& mesh, const uint32_t (&primitives)[N],
+                           Strides strides, const TimePlace& place, LeafBlock<N>& frozen) {
+  const vfloat<N> of_start = broadcast<N>(1.0f - place.fraction);
+  const vfloat<N> of_end = broadcast<N>(place.fraction);
+  const unsigned char* const vertices = mesh.vertices + place.segment * mesh.step_stride;
+#pragma GCC unroll 3
+  for (size_t k = 0; k < 3; ++k) {
+    const unsigned char* rows[N];
+#pragma GCC unroll 16
+    for (int lane = 0; lane < N; ++lane) {
+      const size_t index =
+          read_index(mesh.indices + primitives[lane] * strides.index() + k * sizeof(uint32_t));
+      rows[lane] = vertices + index * strides.vertex();
+    }
+    vfloat<N> start[3], end[3];
+    gather_rows(rows, start);
+#pragma GCC unroll 16
+    for (int lane = 0; lane < N; ++lane) rows[lane] += mesh.step_stride;
+    gather_rows(rows, end);
+    for (int axis = 0; axis < 3; ++axis) {
+      store(frozen.position[k][axis], of_start * start[axis] + of_end * end[axis]);
+    }
+  }
+}
+
+/// Triangles of any meshes: those lanes that exist at a time.
 template <int N>
-inline uint32_t freeze_leaf(const MotionPart& part, const IndexBlock<N>& block, uint32_t lanes,
-                            float time, LeafBlock<N>& frozen) {
+__attribute__((noinline)) uint32_t freeze_each(const MotionPart& part, uint32_t lanes, float time,
+                                               LeafBlock<N>& frozen) {
   float start[3][3][N], end[3][3][N], of_start[N], of_end[N];
   uint32_t existing = 0;
   for (int lane = 0; lane < N; ++lane) {
-    // Lanes of others are filled as well, so that no number is read that nobody wrote.
-    const bool is_own = ((lanes >> lane) & 1u) != 0;
-    const uint32_t id = block.id[is_own ? lane : __builtin_ctz(lanes)];
-    const MovingMeshView& mesh = mesh_of(part, id);
+    const MovingMeshView& mesh = mesh_of(part, frozen.id[lane]);
     TimePlace place = {0, 0.0f};
-    if (place_in_time(mesh.time, time, place) && is_own) existing |= 1u << lane;
+    if (place_in_time(mesh.time, time, place)) existing |= 1u << lane;
     of_start[lane] = 1.0f - place.fraction;
     of_end[lane] = place.fraction;
-    frozen.id[lane] = id;
-    read_corners<N>(mesh, id - mesh.first_id, place.segment, lane, start, end);
+    read_corners<N>(mesh, frozen.id[lane] - mesh.first_id, place.segment, lane, start, end);
   }
   const vfloat<N> start_weight = load<N>(of_start), end_weight = load<N>(of_end);
   for (int k = 0; k < 3; ++k) {
@@ -116,7 +141,36 @@ inline uint32_t freeze_leaf(const MotionPart& part, const IndexBlock<N>& block, 
             start_weight * load<N>(start[k][axis]) + end_weight * load<N>(end[k][axis]));
     }
   }
-  return existing;
+  return existing & lanes;
+}
+
+/// The triangles of a leaf at a time: those of the lanes that exist then. The other lanes repeat one
+/// of them.
+template <int N>
+inline uint32_t freeze_leaf(const MotionPart& part, const IndexBlock<N>& block, uint32_t lanes,
+                            float time, LeafBlock<N>& frozen) {
+  const uint32_t first = block.id[__builtin_ctz(lanes)];
+  const MovingMeshView& mesh = mesh_of(part, first);
+  uint32_t primitives[N];
+  uint32_t last = 0;
+  for (uint32_t lane = 0; lane < N; ++lane) {
+    const uint32_t id = ((lanes >> lane) & 1u) != 0 ? block.id[lane] : first;
+    frozen.id[lane] = id;
+    primitives[lane] = id - mesh.first_id;
+    last = primitives[lane] > last ? primitives[lane] : last;
+  }
+  if (last >= mesh.triangle_count || !mesh.indices) {
+    return freeze_each<N>(part, lanes, time, frozen);
+  }
+  TimePlace place;
+  if (!place_in_time(mesh.time, time, place)) return 0;
+  if (mesh.vertex_stride == DenseStrides::vertex() && mesh.index_stride == DenseStrides::index()) {
+    freeze_indexed<N>(mesh, primitives, DenseStrides(), place, frozen);
+  } else {
+    freeze_indexed<N>(mesh, primitives, AnyStrides{mesh.vertex_stride, mesh.index_stride}, place,
+                      frozen);
+  }
+  return lanes;
 }
 
 }  // namespace

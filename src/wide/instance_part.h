@@ -47,6 +47,7 @@ struct MovingArray {
   TransformFormat format;
   uint32_t first;  ///< the number of its first instance
   uint32_t count;
+  uint32_t is_regular;  ///< 1: none is singular or out of scale at any time
 };
 
 /// The instances that move, in the leaves of a tree of their own by their numbers. Plain data.

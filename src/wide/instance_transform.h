@@ -142,6 +142,17 @@ KIWAMI_TRANSFORM Affine map_of(const float (&inverse)[4][3]) {
   return map;
 }
 
+KIWAMI_TRANSFORM void round_to_floats(const Affine& map, float (&rounded)[4][3]) {
+  for (int k = 0; k < 4; ++k) {
+    for (int row = 0; row < 3; ++row) rounded[k][row] = static_cast<float>(map.column[k][row]);
+  }
+}
+
+/// The same as invert_for_rays of a matrix that is known to be neither singular nor out of scale.
+KIWAMI_TRANSFORM void invert_regular(const float (&rows)[12], float (&inverse)[4][3]) {
+  round_to_floats(inverse_of(map_of(rows)), inverse);
+}
+
 /// The inverse of a matrix of three rows as kernels apply it: rounded to floats. False for a matrix
 /// that is not finite or singular.
 KIWAMI_TRANSFORM bool invert_for_rays(const float (&rows)[12], float (&inverse)[4][3]) {
@@ -154,9 +165,9 @@ KIWAMI_TRANSFORM bool invert_for_rays(const float (&rows)[12], float (&inverse)[
   for (int k = 0; k < 4; ++k) {
     for (int row = 0; row < 3; ++row) {
       if (__builtin_fabs(exact.column[k][row]) > double{__FLT_MAX__}) return false;
-      inverse[k][row] = static_cast<float>(exact.column[k][row]);
     }
   }
+  round_to_floats(exact, inverse);
   // The floats' own inverse is within a fourth of the matrix where this is far from the limit.
   if (norm * exact_norm <= kMaxCondition / 4) return true;
   const Affine rounded = map_of(inverse), forward = inverse_of(rounded);

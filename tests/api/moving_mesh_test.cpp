@@ -175,5 +175,42 @@ TEST_F(MovingMeshErrors, NameTheField) {
   expect(KIWAMI_ERROR_TOO_LARGE, "desc.triangle_count is 2147483648");
 }
 
+/// Triangles that change sides meet in the middle, where boxes between both ends would be as wide as
+/// at these; those that go side by side need no more boxes.
+TEST(MovingMesh, TimeIsDividedWhereThatPays) {
+  const Device device = make_device();
+  const auto scene_of = [&](float side_at_end) {
+    std::vector<float> vertices;
+    for (const float side : {1.0f, side_at_end}) {
+      for (int i = 0; i < 512; ++i) {
+        const float x = side * (static_cast<float>(i) - 255.5f), y = static_cast<float>(i % 32);
+        vertices.insert(vertices.end(), {x, y, 0, x + 0.5f, y, 0, x, y + 0.5f, 0});
+      }
+    }
+    kiwami_moving_mesh_desc desc;
+    EXPECT_EQ(kiwami_moving_mesh_desc_init(&desc, sizeof desc), KIWAMI_OK);
+    desc.vertices = vertices.data();
+    desc.vertex_count = 3 * 512;
+    desc.triangle_count = 512;
+    Scene scene = make_scene(device, make(device, desc));
+    EXPECT_EQ(kiwami_scene_validate(scene.get()), KIWAMI_OK) << last_error();
+    return scene;
+  };
+  const Scene together = scene_of(1.0f), apart = scene_of(-1.0f);
+  EXPECT_GT(info_of(apart).total_bytes, info_of(together).total_bytes);
+  // Halfway all are in one column, and rays beside it visit the root alone.
+  kiwami_ray ray = ray_along_z(30.0f, 7.25f);
+  ray.origin_z = -10.0f;
+  ray.time = 0.5f;
+  kiwami_visits visits{};
+  visits.struct_size = sizeof visits;
+  ASSERT_EQ(kiwami_scene_count_visits(apart.get(), &ray, 0, 1, 0, &visits, nullptr, 0), KIWAMI_OK);
+  EXPECT_EQ(visits.node_visits, 1u);
+  ray = ray_along_z(0.1f, 7.1f);
+  ray.origin_z = -10.0f;
+  ray.time = 0.5f;
+  EXPECT_EQ(closest_hit(apart, ray).t, 10.0f);
+}
+
 }  // namespace
 }  // namespace kiwami_api_tests
