@@ -6,6 +6,7 @@
 #define KIWAMI_H
 
 #include "base.h"
+#include "binary_tree.h"
 #include "bvh.h"
 #include "device.h"
 #include "distribution.h"

@@ -233,6 +233,23 @@ typedef struct kiwami_light_lobe {
   float roughness; /* GGX's alpha; less than 0.001 counts as that, more than 1 as 1 */
 } kiwami_light_lobe;
 
+/* Where the numbers come from that ROULETTE and LAZY_ROULETTE compare with. */
+enum {
+  /* The receiver's random number. */
+  KIWAMI_LIGHT_SEQUENCE_RANDOM = 0,
+  /* Of each number of a pixel a low-discrepancy sequence over its samples, shifted by blue noise over
+   * the pixels: errors of neighbours differ, so that pictures look and filter better with as much
+   * error in all. What is not compared (which of several that were accepted stay, and the choices'
+   * new random numbers) comes from the receiver's random number all the same. */
+  KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE = 1
+};
+
+/* A sample of a pixel. 12 bytes, at any address. */
+typedef struct kiwami_light_pixel {
+  uint32_t x, y;
+  uint32_t sample; /* its number among those of the pixel, counted from any number */
+} kiwami_light_pixel;
+
 enum {
   /* Sample on the calling thread alone, however many receivers there are. */
   KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1u << 0
@@ -256,6 +273,13 @@ typedef struct kiwami_light_query {
   const kiwami_light_lobe* lobes; /* of the lobe GLOSSY, one a receiver; read during the call only;
                                    * NULL only with other lobes */
   uint64_t lobe_stride;           /* bytes from one to the next, at least 16; 0: 16 */
+  uint32_t sequence;              /* of ROULETTE and LAZY_ROULETTE: KIWAMI_LIGHT_SEQUENCE_* */
+  uint32_t sequence_seed;         /* of BLUE_NOISE: another seed, other numbers. Over all seeds each
+                                   * number is uniform, so estimates are unbiased. */
+  const kiwami_light_pixel* pixels; /* of the sequence BLUE_NOISE, one a receiver; read during the
+                                     * call only; NULL only with others. kiwami_light_pdf does not
+                                     * read it. */
+  uint64_t pixel_stride;            /* bytes from one to the next, at least 12; 0: 12 */
 } kiwami_light_query;
 
 /* Fill a struct with its defaults: see the fields; a transform that changes nothing, no

@@ -214,6 +214,17 @@ void check_lobes(const kiwami_light_query& query) {
   }
 }
 
+void check_sequence(const kiwami_light_query& query, bool is_sampled) {
+  if (query.sequence > KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE) {
+    throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
+                "query.sequence is %u, expected one of KIWAMI_LIGHT_SEQUENCE_*", query.sequence);
+  }
+  if (query.sequence == KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE && is_sampled) {
+    check_array("query.pixels", query.pixels, static_cast<size_t>(query.pixel_stride),
+                sizeof(kiwami_light_pixel), 1);
+  }
+}
+
 kiwami_light_query read_query(const kiwami_light_query* given) {
   if (!given) return default_query();
   const kiwami_light_query query =
@@ -237,8 +248,13 @@ LightMethod method_of(const kiwami_light_query& query) {
   const uint32_t method =
       has_tree && query.max_choices == 1 ? uint32_t{KIWAMI_LIGHT_METHOD_TREE} : query.method;
   LightMethod result{method, query.flags != 0, {}};
-  result.rules = {method, query.lobe, query.order, static_cast<double>(query.reach),
-                  query.max_choices};
+  result.rules = {method,
+                  query.lobe,
+                  query.order,
+                  static_cast<double>(query.reach),
+                  query.max_choices,
+                  query.sequence,
+                  query.sequence_seed};
   return result;
 }
 
@@ -254,6 +270,11 @@ size_t stride_or(size_t stride, size_t size) { return stride ? stride : size; }
 const unsigned char* lobes_of(const kiwami_light_query& query) {
   return query.lobe == KIWAMI_LIGHT_LOBE_GLOSSY
              ? reinterpret_cast<const unsigned char*>(query.lobes)
+             : nullptr;
+}
+const unsigned char* pixels_of(const kiwami_light_query& query) {
+  return query.sequence == KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE
+             ? reinterpret_cast<const unsigned char*>(query.pixels)
              : nullptr;
 }
 size_t lobe_stride_of(const kiwami_light_query& query) {
@@ -382,6 +403,7 @@ kiwami_result kiwami_light_sample(const kiwami_light_tree* tree,
     const LightTree& object = *object_of(tree);
     const kiwami_light_query checked = read_query(query);
     check_roulette(checked, committed_of(object));
+    check_sequence(checked, true);
     if (count == 0) return;
     if (object.device().validates_arguments()) {
       check_array("receivers", receivers, receiver_stride, sizeof(kiwami_light_receiver), count);
@@ -389,18 +411,21 @@ kiwami_result kiwami_light_sample(const kiwami_light_tree* tree,
       check_array("choices", choices, choice_stride, sizeof(kiwami_light_choice),
                   count * checked.max_choices);
     }
-    const LightBatch batch{reinterpret_cast<const unsigned char*>(receivers),
-                           stride_or(receiver_stride, sizeof(kiwami_light_receiver)),
-                           nullptr,
-                           0,
-                           reinterpret_cast<unsigned char*>(choices),
-                           stride_or(choice_stride, sizeof(kiwami_light_choice)),
-                           count,
-                           checked.max_choices,
-                           split_limit_of(checked.threshold),
-                           checked.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS,
-                           lobes_of(checked),
-                           lobe_stride_of(checked)};
+    const LightBatch batch{
+        reinterpret_cast<const unsigned char*>(receivers),
+        stride_or(receiver_stride, sizeof(kiwami_light_receiver)),
+        nullptr,
+        0,
+        reinterpret_cast<unsigned char*>(choices),
+        stride_or(choice_stride, sizeof(kiwami_light_choice)),
+        count,
+        checked.max_choices,
+        split_limit_of(checked.threshold),
+        checked.method == KIWAMI_LIGHT_METHOD_LIGHTCUTS,
+        lobes_of(checked),
+        lobe_stride_of(checked),
+        pixels_of(checked),
+        stride_or(static_cast<size_t>(checked.pixel_stride), sizeof(kiwami_light_pixel))};
     sample_lights(object, method_of(checked), batch);
   });
 }
@@ -415,6 +440,7 @@ kiwami_result kiwami_light_pdf(const kiwami_light_tree* tree,
     const LightTree& object = *object_of(tree);
     const kiwami_light_query checked = read_query(query);
     check_roulette(checked, committed_of(object));
+    check_sequence(checked, false);
     if (count == 0) return;
     if (object.device().validates_arguments()) {
       check_array("receivers", receivers, receiver_stride, sizeof(kiwami_light_receiver), count);

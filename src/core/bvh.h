@@ -84,6 +84,10 @@ class Bvh : public Object<Bvh> {
 
   bool is_over_boxes() const { return !scene_.get() && !mesh_.get(); }
   bool is_of_scene() const { return scene_.get() != nullptr; }
+  /// What a tree was built over, or null: the mesh, and the vertices that it had if they were
+  /// copied.
+  TriangleMesh* mesh() const { return mesh_.get(); }
+  const Reference<BufferCopy>& mesh_vertices() const { return mesh_vertices_; }
   /// What a file holds of it.
   TriangleSource source() const;
   const Array<uint32_t>& primitive_ids() const { return tree_.primitive_ids; }

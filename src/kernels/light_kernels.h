@@ -33,6 +33,10 @@ struct LightBatch {
   // Of glossy receivers, in kernels and in the roulettes, which are none.
   const unsigned char* lobes = nullptr;  ///< kiwami_light_lobe, or null
   size_t lobe_stride = 0;
+
+  // Of the roulettes alone.
+  const unsigned char* pixels = nullptr;  ///< kiwami_light_pixel, or null
+  size_t pixel_stride = 0;
 };
 
 }  // namespace kiwami

@@ -62,10 +62,10 @@ class CommittedLights : public Object<CommittedLights> {
   /// Whether it was built with what the roulettes need.
   bool has_roulette() const { return has_roulette_; }
   /// The lights that the roulette accepts, and a distant one, at most rules.max_count; returns how
-  /// many. lobe may be null.
-  uint32_t play_roulette(const kiwami_light_receiver& receiver, const kiwami_light_lobe* lobe,
+  /// many.
+  uint32_t play_roulette(const kiwami_light_receiver& receiver, const RouletteExtras& extras,
                          const RouletteRules& rules, kiwami_light_choice* choices) const;
-  /// The probability with which the roulette accepts a light.
+  /// The probability with which the roulette accepts a light. lobe may be null.
   float roulette_probability(const kiwami_light_receiver& receiver, const kiwami_light_lobe* lobe,
                              const RouletteRules& rules, const kiwami_light_name& name) const;
 

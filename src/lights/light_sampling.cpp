@@ -27,6 +27,7 @@ void for_blocks(const LightTree& tree, const LightMethod& method, const LightBat
     LightBatch block = batch;
     block.receivers += begin * batch.receiver_stride;
     if (batch.lobes) block.lobes += begin * batch.lobe_stride;
+    if (batch.pixels) block.pixels += begin * batch.pixel_stride;
     if (batch.names) block.names += begin * batch.name_stride;
     block.answers += begin * answer_count * batch.answer_stride;
     block.count = end - begin;
@@ -57,8 +58,10 @@ void play_roulette(const CommittedLights& lights, const RouletteRules& rules,
     std::memcpy(&receiver, batch.receivers + i * batch.receiver_stride, sizeof receiver);
     kiwami_light_choice choices[kMaxLightChoices];
     kiwami_light_lobe lobe;
-    const uint32_t count =
-        lights.play_roulette(receiver, read_lobe(batch, i, lobe), rules, choices);
+    kiwami_light_pixel pixel;
+    if (batch.pixels) std::memcpy(&pixel, batch.pixels + i * batch.pixel_stride, sizeof pixel);
+    const RouletteExtras extras{read_lobe(batch, i, lobe), batch.pixels ? &pixel : nullptr};
+    const uint32_t count = lights.play_roulette(receiver, extras, rules, choices);
     for (uint32_t k = 0; k < batch.max_choices; ++k) {
       if (k >= count) choices[k] = {KIWAMI_INVALID_ID, KIWAMI_INVALID_ID, 0, 0.0f, 0.0};
       std::memcpy(batch.answers + (i * batch.max_choices + k) * batch.answer_stride, &choices[k],

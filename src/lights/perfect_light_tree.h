@@ -13,6 +13,14 @@ struct RouletteRules {
   uint32_t order;   ///< KIWAMI_LIGHT_ORDER_*
   double reach;     ///< 0: by the lights' extent
   uint32_t max_count;
+  uint32_t sequence;  ///< KIWAMI_LIGHT_SEQUENCE_*
+  uint32_t sequence_seed;
+};
+
+/// What belongs to a receiver beside itself; null where there is none.
+struct RouletteExtras {
+  const kiwami_light_lobe* lobe;
+  const kiwami_light_pixel* pixel;
 };
 
 /// By what, besides energy and squared distance, a light is accepted.

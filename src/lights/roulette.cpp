@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "lights/blue_noise.h"
 #include "lights/committed_lights.h"
 
 namespace kiwami {
@@ -92,6 +93,25 @@ double aimed_count(uint32_t max_count, bool has_distant) {
   return kAimedShare * (max_count - (has_distant && max_count > 1 ? 1 : 0));
 }
 
+/// Plays with the numbers that the rules ask for.
+template <typename Accept>
+void play_by_rules(const PerfectLightTree& tree, const RouletteReceiver& receiver, double strength,
+                   double random, const kiwami_light_pixel* pixel, const RouletteRules& rules,
+                   const Accept& accept) {
+  const auto play = [&](const auto& numbers) { tree.play(receiver, strength, numbers, accept); };
+  const uint32_t levels = tree.level_count();
+  const bool is_dithered = rules.sequence == KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE && pixel;
+  const DitheredSource source(is_dithered ? *pixel : kiwami_light_pixel{}, rules.sequence_seed);
+  if (rules.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {
+    const double number = is_dithered ? number_of_bits(source.bits(kFirstNumber)) : random;
+    play(LazyNumbers(number, levels, rules.order == KIWAMI_LIGHT_ORDER_SCRAMBLED));
+  } else if (is_dithered && rules.method == KIWAMI_LIGHT_METHOD_ROULETTE) {
+    play(IndependentNumbersOf<DitheredSource>(source, levels));
+  } else {
+    play(IndependentNumbers(random, levels));
+  }
+}
+
 }  // namespace
 
 double CommittedLights::roulette_strength(const RouletteReceiver& receiver,
@@ -104,10 +124,10 @@ double CommittedLights::roulette_strength(const RouletteReceiver& receiver,
 }
 
 uint32_t CommittedLights::play_roulette(const kiwami_light_receiver& given,
-                                        const kiwami_light_lobe* lobe, const RouletteRules& rules,
+                                        const RouletteExtras& extras, const RouletteRules& rules,
                                         kiwami_light_choice* choices) const {
   RouletteReceiver receiver;
-  if (!read_receiver(given, lobe, rules, receiver)) return 0;
+  if (!read_receiver(given, extras.lobe, rules, receiver)) return 0;
   const double random = clamped(given.random);
   uint32_t first = 0;
   if (!distant_powers_.empty()) {
@@ -128,13 +148,7 @@ uint32_t CommittedLights::play_roulette(const kiwami_light_receiver& given,
     if (place >= room) place = mixed_bits(number_of_bits(bits), leaf.leaf) % accepted;
     if (place < room) choices[first + place] = choice_of_leaf(leaf, number_of_bits(bits));
   };
-  const uint32_t levels = perfect_tree_.level_count();
-  if (rules.method == KIWAMI_LIGHT_METHOD_LAZY_ROULETTE) {
-    const bool is_scrambled = rules.order == KIWAMI_LIGHT_ORDER_SCRAMBLED;
-    perfect_tree_.play(receiver, strength, LazyNumbers(random, levels, is_scrambled), accept);
-  } else {
-    perfect_tree_.play(receiver, strength, IndependentNumbers(random, levels), accept);
-  }
+  play_by_rules(perfect_tree_, receiver, strength, random, extras.pixel, rules, accept);
   const uint32_t count = first + static_cast<uint32_t>(std::min<uint64_t>(accepted, room));
   if (accepted > room) {
     const double share = static_cast<double>(room) / static_cast<double>(accepted);

@@ -11,14 +11,18 @@
 namespace kiwami {
 
 /// Random bits for number index: SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, "Fast Splittable
-/// Pseudorandom Number Generators", OOPSLA 2014) over the receiver's random number.
-inline uint64_t mixed_bits(double random, uint64_t index) {
-  uint64_t bits;
-  std::memcpy(&bits, &random, sizeof bits);
-  bits += (index + 1) * 0x9E3779B97F4A7C15u;
+/// Pseudorandom Number Generators", OOPSLA 2014).
+inline uint64_t mixed_integer(uint64_t seed, uint64_t index) {
+  uint64_t bits = seed + (index + 1) * 0x9E3779B97F4A7C15u;
   bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
   bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
   return bits ^ (bits >> 31);
+}
+/// The same over the receiver's random number.
+inline uint64_t mixed_bits(double random, uint64_t index) {
+  uint64_t bits;
+  std::memcpy(&bits, &random, sizeof bits);
+  return mixed_integer(bits, index);
 }
 inline double number_of_bits(uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
@@ -60,23 +64,37 @@ class LazyNumbers {
   bool is_scrambled_;
 };
 
+/// Bits from hashes of the receiver's random number.
+class HashedSource {
+ public:
+  HashedSource(double random) : random_(random) {}  // NOLINT(google-explicit-constructor)
+  uint64_t bits(uint64_t index) const { return mixed_bits(random_, index); }
+
+ private:
+  double random_;
+};
+
+/// The index of the first number of a receiver.
+constexpr uint64_t kFirstNumber = kNodeStream - 1;
+
 /// Independent numbers (Tokuyoshi & Harada 2019): the least of a node's is that of one of its
 /// children, each with the same probability since they have as many leaves; the other's is that of
 /// as many uniform numbers which are not less. The least of 2^n numbers takes n square roots, in
 /// place of the paper's power, so that it is the same to the bit everywhere; places without a light
-/// have numbers, too.
-class IndependentNumbers {
+/// have numbers, too. Source: where bits come from, 53 for a number and a last one.
+template <typename Source>
+class IndependentNumbersOf {
  public:
   using Value = double;  ///< the least of a subtree
 
-  IndependentNumbers(double random, uint32_t level_count)
-      : random_(random),
-        root_(least_of_uniform(number_of_bits(mixed_bits(random, kNodeStream - 1)), level_count)) {}
+  IndependentNumbersOf(const Source& source, uint32_t level_count)
+      : source_(source),
+        root_(least_of_uniform(number_of_bits(source.bits(kFirstNumber)), level_count)) {}
 
   Value root() const { return root_; }
   double least(Value value, uint32_t) const { return value; }
   void divide(Value value, size_t node, uint32_t below, Value (&children)[2]) const {
-    const uint64_t bits = mixed_bits(random_, kNodeStream + node);
+    const uint64_t bits = source_.bits(kNodeStream + node);
     const double other = least_of_uniform(number_of_bits(bits), below - 1);
     children[bits & 1] = value;
     children[(bits & 1) ^ 1] = value + (1.0 - value) * other;
@@ -90,8 +108,9 @@ class IndependentNumbers {
   }
 
  private:
-  double random_;
+  Source source_;
   double root_;
 };
+using IndependentNumbers = IndependentNumbersOf<HashedSource>;
 
 }  // namespace kiwami

@@ -142,9 +142,7 @@ void write_nodes(const LightLinks& links, const Array<LightCluster>& clusters, s
 
 void write_any(const LightLinks& links, const Array<LightCluster>& clusters, size_t leaf_count,
                Memory& memory, WideLightTree& tree) {
-  switch (tree.width) {
-    case 2:
-      return write_nodes<2>(links, clusters, leaf_count, memory, tree);
+  switch (slots_of(tree.width)) {
     case 4:
       return write_nodes<4>(links, clusters, leaf_count, memory, tree);
     case 8:
@@ -196,7 +194,7 @@ WideLightTree contract(const LightLinks& links, const Array<LightCluster>& clust
     tree.depth = std::max(tree.depth, task.depth);
     uint32_t slots[16];
     const uint32_t count = open_clusters(task.cluster, links, costs, width, slots);
-    for (uint32_t slot = 0; slot < width; ++slot) {
+    for (uint32_t slot = 0; slot < slots_of(width); ++slot) {
       slot_clusters.push_back(slot < count ? slots[slot] : kNoLightSlot);
       if (slot < count && !is_light_leaf(links[slots[slot]])) {
         pending.push_back({slots[slot], task.depth + 1});

@@ -8,8 +8,8 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 
 void set_light_kernels(LightKernels (&kernels)[4]) {
-  kernels[0] = light_kernels_of_width<2>();
-  kernels[1] = light_kernels_of_width<4>();
+  // Nodes of two children have four slots.
+  kernels[0] = kernels[1] = light_kernels_of_width<4>();
   kernels[2] = light_kernels_of_width<8>();
   kernels[3] = light_kernels_of_width<16>();
 }

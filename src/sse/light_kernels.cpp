@@ -7,7 +7,10 @@
 namespace kiwami {
 namespace KIWAMI_ISA {
 
-void set_light_kernels(LightKernels (&kernels)[4]) { kernels[1] = light_kernels_of_width<4>(); }
+void set_light_kernels(LightKernels (&kernels)[4]) {
+  // Nodes of two children have four slots.
+  kernels[0] = kernels[1] = light_kernels_of_width<4>();
+}
 
 }  // namespace KIWAMI_ISA
 }  // namespace kiwami

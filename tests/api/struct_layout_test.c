@@ -66,6 +66,25 @@ static void check_distribution_desc(void) {
   FIELD(kiwami_distribution_desc, weight_count, 24);
 }
 
+static void check_binary_trees(void) {
+  SIZE(kiwami_binary_tree_info, 64);
+  FIELD(kiwami_binary_tree_info, struct_size, 0);
+  FIELD(kiwami_binary_tree_info, layout, 4);
+  FIELD(kiwami_binary_tree_info, node_count, 8);
+  FIELD(kiwami_binary_tree_info, split_count, 16);
+  FIELD(kiwami_binary_tree_info, carve_count, 24);
+  FIELD(kiwami_binary_tree_info, leaf_count, 32);
+  FIELD(kiwami_binary_tree_info, primitive_count, 40);
+  FIELD(kiwami_binary_tree_info, node_bytes, 48);
+  FIELD(kiwami_binary_tree_info, bytes, 56);
+  SIZE(kiwami_binary_visits, 32);
+  FIELD(kiwami_binary_visits, struct_size, 0);
+  FIELD(kiwami_binary_visits, reserved, 4);
+  FIELD(kiwami_binary_visits, node_visits, 8);
+  FIELD(kiwami_binary_visits, plane_tests, 16);
+  FIELD(kiwami_binary_visits, leaf_visits, 24);
+}
+
 static void check_tetrahedra(void) {
   SIZE(kiwami_tetrahedra_info, 72);
   FIELD(kiwami_tetrahedra_info, struct_size, 0);
@@ -143,7 +162,7 @@ static void check_lights(void) {
   SIZE(kiwami_light_name, 8);
   FIELD(kiwami_light_name, light_id, 0);
   FIELD(kiwami_light_name, instance_id, 4);
-  SIZE(kiwami_light_query, 48);
+  SIZE(kiwami_light_query, 72);
   FIELD(kiwami_light_query, struct_size, 0);
   FIELD(kiwami_light_query, flags, 4);
   FIELD(kiwami_light_query, method, 8);
@@ -154,6 +173,14 @@ static void check_lights(void) {
   FIELD(kiwami_light_query, reach, 28);
   FIELD(kiwami_light_query, lobes, 32);
   FIELD(kiwami_light_query, lobe_stride, 40);
+  FIELD(kiwami_light_query, sequence, 48);
+  FIELD(kiwami_light_query, sequence_seed, 52);
+  FIELD(kiwami_light_query, pixels, 56);
+  FIELD(kiwami_light_query, pixel_stride, 64);
+  SIZE(kiwami_light_pixel, 12);
+  FIELD(kiwami_light_pixel, x, 0);
+  FIELD(kiwami_light_pixel, y, 4);
+  FIELD(kiwami_light_pixel, sample, 8);
   SIZE(kiwami_light_lobe, 16);
   FIELD(kiwami_light_lobe, axis, 0);
   FIELD(kiwami_light_lobe, roughness, 12);
@@ -777,6 +804,7 @@ int main(void) {
   check_lights();
   check_distributions();
   check_tetrahedra();
+  check_binary_trees();
   check_numbers();
   return failures != 0;
 }

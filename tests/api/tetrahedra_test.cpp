@@ -59,7 +59,7 @@ std::vector<Location> locate(const Handle& tetrahedra, const std::vector<float>&
 
 // ---------------------------------------------------------------- the oracle
 
-__extension__ typedef __int128 Wide;
+__extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
 
 /// Six times the signed volume, exactly.
 Wide volume(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& d) {

@@ -104,8 +104,8 @@ uint32_t walk(const LightTreeView& view, uint32_t width) {
     walk.run();
     return walk.depth();
   };
-  if (width == 2) return run(Walk<2>(view));
-  if (width == 4) return run(Walk<4>(view));
+  // Nodes of two children have four slots.
+  if (width <= 4) return run(Walk<4>(view));
   if (width == 8) return run(Walk<8>(view));
   return run(Walk<16>(view));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `kiwami bench --distributions` and `--tetrahedra`: what has no rays, from the command line.
+// `kiwami bench` with --distributions, --tetrahedra or --binary-layouts.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -57,6 +57,31 @@ TEST(TetrahedronCommand, BenchComparesTheMethods) {
   const std::map<std::string, int> expected = {{"binary_walk", 2}, {"boxes", 2}, {"faces", 2}};
   EXPECT_EQ(methods, expected);
   EXPECT_EQ(run_command({"bench", "--tetrahedra", "0"}).exit_code, 2);
+}
+
+TEST(LayoutCommand, BenchComparesTheLayoutsOfABinaryTree) {
+  const TemporaryFolder folder;
+  const CommandResult result =
+      run_command({"bench", "--binary-layouts", "room:3000", "--builder", "sweep_sah", "--rays",
+                   "primary,ao,random", "--ray-count", "3000", "--rounds", "1", "--json",
+                   folder / "rows.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
+  std::map<std::string, std::map<std::string, Json>> rows;
+  for (const Json& row : Json::parse(read_bytes(folder / "rows.json"), nullptr, false)) {
+    EXPECT_EQ(row.at("wrong"), "");
+    rows[row.at("rays")][row.at("layout")] = row;
+  }
+  ASSERT_EQ(rows.size(), 2u) << "the sets of closest hits";
+  for (auto& [name, layouts] : rows) {
+    const Json &boxes = layouts["boxes"], &dual_split = layouts["dual_split"];
+    EXPECT_LT(dual_split.at("node_bytes_per_triangle").get<double>(),
+              0.6 * boxes.at("node_bytes_per_triangle").get<double>());
+    EXPECT_LT(dual_split.at("plane_tests").get<double>(),
+              0.5 * boxes.at("plane_tests").get<double>());
+  }
+  EXPECT_EQ(run_command({"bench", "--binary-layouts", "room:300", "--builder", "wide_top_down"})
+                .exit_code,
+            2);
 }
 
 TEST(DistributionCommand, ASceneThatIsNotThereIsAnError) {

@@ -20,7 +20,7 @@ TEST(LightCommand, BenchComparesMethodsAndWidths) {
   ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
   const Json rows = Json::parse(read_bytes(folder / "rows.json"), nullptr, false);
   // Power and the roulettes once, the others at four widths.
-  ASSERT_EQ(rows.size(), 6u + 3 * 4);
+  ASSERT_EQ(rows.size(), 8u + 3 * 4);
   std::map<std::string, double> errors;
   for (const Json& row : rows) {
     for (const char* key : {"lights", "receivers", "mega_choices_per_second", "mse",
@@ -35,6 +35,38 @@ TEST(LightCommand, BenchComparesMethodsAndWidths) {
   EXPECT_LT(errors["lightcuts"] / 4, errors["power"]);
   EXPECT_LT(errors["roulette"], errors["power"]);
   EXPECT_LT(errors["lazy_roulette"], errors["power"]);
+}
+
+TEST(LightCommand, ShadowRaysCountInTheTime) {
+  const TemporaryFolder folder;
+  std::vector<std::string> arguments = {"bench",
+                                        "--lights",
+                                        "room:1000",
+                                        "--light-share",
+                                        "0.3",
+                                        "--light-receivers",
+                                        "64",
+                                        "--light-samples",
+                                        "16",
+                                        "--light-widths",
+                                        "8",
+                                        "--rounds",
+                                        "1",
+                                        "--light-methods",
+                                        "power,tree",
+                                        "--json",
+                                        folder / "rows.json"};
+  const auto speed_of_power = [&] {
+    const CommandResult result = run_command(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
+    const Json rows = Json::parse(read_bytes(folder / "rows.json"), nullptr, false);
+    EXPECT_EQ(rows.size(), 2u);
+    EXPECT_LT(rows.at(1).at("mse"), rows.at(0).at("mse"));
+    return rows.at(0).at("mega_choices_per_second").get<double>();
+  };
+  const double plain = speed_of_power();
+  arguments.push_back("--light-shadows");
+  EXPECT_LT(speed_of_power(), plain);
 }
 
 TEST(LightCommand, GlossyReceiversGainByTheirLobe) {
@@ -67,8 +99,9 @@ TEST(LightCommand, PicturesAreTheSameOnEveryIsaAndNumberOfThreads) {
     EXPECT_NE(result.output.find("emissive triangles"), std::string::npos) << result.output;
     return read_bytes(picture);
   };
-  for (const char* method : {"power", "tree", "tree_splitting", "lightcuts", "culling", "roulette",
-                             "roulette_sphere", "lazy_roulette", "lazy_scrambled"}) {
+  for (const char* method :
+       {"power", "tree", "tree_splitting", "lightcuts", "culling", "roulette", "roulette_sphere",
+        "lazy_roulette", "lazy_scrambled", "roulette_dithered", "lazy_dithered"}) {
     const std::string scalar =
         render({"--lights", method, "--isa", "scalar", "--bvh-width", "8", "--threads", "1"});
     EXPECT_GT(scalar.size(), 24u * 16 * 3);

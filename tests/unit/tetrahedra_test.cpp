@@ -17,7 +17,7 @@ namespace {
 
 using kiwami::Vec3f;
 
-__extension__ typedef __int128 Wide;
+__extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
 
 /// A whole number below 2^38 that is a float: 24 digits at any place.
 int64_t random_whole(Random& random) {

@@ -57,6 +57,14 @@ struct Receivers {
   std::vector<kiwami_light_receiver> points;
   std::vector<GlossySurface> surfaces;   ///< of each; none where they are diffuse
   std::vector<kiwami_light_lobe> lobes;  ///< of each; none where they are diffuse
+  std::vector<kiwami_light_pixel> pixels;
+  const BuiltScene* scene = nullptr;  ///< what light is in the shadow of; null: of nothing
+
+  kiwami_ray shadow_ray(const EmissiveTriangle& light, size_t i) const {
+    const Vec3 at{points[i].position[0], points[i].position[1], points[i].position[2]};
+    // Short of the light, which would be in its own way.
+    return make_ray(at, light.middle() - at, 0.0f, 0.999f);
+  }
 
   double contribution(const EmissiveTriangle& light, size_t i) const {
     const kiwami_light_receiver& point = points[i];
@@ -82,21 +90,22 @@ class LightRun {
         receivers_(receivers),
         set_(device, lights, width, method.is_roulette()) {}
 
-  /// Estimates what each receiver gets, `draws` calls of the method together. What is kept is
-  /// timed: the choices, and the contributions that they ask for.
+  /// Estimates what each receiver gets, `draws` calls of the method together: the choices, the
+  /// contributions that they ask for, and the shadow rays to them if there are shadows.
   void run(uint32_t draws) {
     std::vector<kiwami_light_receiver> receivers = receivers_.points;
     estimates_.assign(receivers.size(), 0.0);
     choice_count_ = 0;
     std::vector<kiwami_light_choice> choices(receivers.size() * method_.max_choices);
+    std::vector<kiwami_light_pixel> pixels = receivers_.pixels;
     Random random(7, 93);
     for (uint32_t draw = 0; draw < draws; ++draw) {
       for (kiwami_light_receiver& receiver : receivers) {
         receiver.random = (static_cast<double>(random.next()) + random.uniform()) * 0x1p-32;
       }
-      set_.sample(method_, receivers, receivers_.lobes, choices);
-      for (size_t i = 0; i < receivers.size(); ++i)
-        estimates_[i] += estimate(i, &choices[i * method_.max_choices]) / draws;
+      for (kiwami_light_pixel& pixel : pixels) pixel.sample = draw;
+      set_.sample(method_, receivers, {receivers_.lobes, pixels}, choices);
+      add_estimates(choices, draws);
     }
   }
 
@@ -107,15 +116,33 @@ class LightRun {
   const std::vector<double>& estimates() const { return estimates_; }
 
  private:
-  double estimate(size_t receiver, const kiwami_light_choice* choices) {
-    double sum = 0.0;
-    for (uint32_t k = 0; k < method_.max_choices; ++k) {
-      if (choices[k].light_id == KIWAMI_INVALID_ID) break;
-      const EmissiveTriangle& light = lights_[choices[k].light_id];
-      sum += receivers_.contribution(light, receiver) / static_cast<double>(choices[k].probability);
-      ++choice_count_;
+  void add_estimates(const std::vector<kiwami_light_choice>& choices, uint32_t draws) {
+    rays_.clear();
+    sources_.clear();
+    amounts_.clear();
+    for (size_t i = 0; i < estimates_.size(); ++i) {
+      for (uint32_t k = 0; k < method_.max_choices; ++k) {
+        const kiwami_light_choice& choice = choices[i * method_.max_choices + k];
+        if (choice.light_id == KIWAMI_INVALID_ID) break;
+        ++choice_count_;
+        const EmissiveTriangle& light = lights_[choice.light_id];
+        const double amount =
+            receivers_.contribution(light, i) / static_cast<double>(choice.probability) / draws;
+        if (!receivers_.scene) {
+          estimates_[i] += amount;
+        } else if (amount > 0.0) {
+          rays_.push_back(receivers_.shadow_ray(light, i));
+          sources_.push_back(i);
+          amounts_.push_back(amount);
+        }
+      }
     }
-    return sum;
+    if (rays_.empty()) return;
+    occluded_.resize(rays_.size());
+    receivers_.scene->any_hits(rays_, occluded_);
+    for (size_t k = 0; k < rays_.size(); ++k) {
+      if (occluded_[k] == 0) estimates_[sources_[k]] += amounts_[k];
+    }
   }
 
   const LightMethodName& method_;
@@ -125,6 +152,11 @@ class LightRun {
   LightSet set_;
   std::vector<double> estimates_;
   uint64_t choice_count_ = 0;
+  // Of the shadow rays of one call.
+  std::vector<kiwami_ray> rays_;
+  std::vector<size_t> sources_;
+  std::vector<double> amounts_;
+  std::vector<uint8_t> occluded_;
 };
 
 class LightBench {
@@ -137,9 +169,10 @@ class LightBench {
     if (lights_.empty()) {
       throw UsageError("no triangle of '" + name + "' shines, expected a larger --light-share");
     }
-    const Device device(settings.isas.front(), 0);
-    const BuiltScene scene(device, file, settings.build);
-    place_receivers(scene, file);
+    device_ = std::make_unique<Device>(settings.isas.front(), 1);
+    scene_ = std::make_unique<BuiltScene>(*device_, file, settings.build);
+    if (options.has_shadows) receivers_.scene = scene_.get();
+    place_receivers(file);
     find_references();
   }
 
@@ -177,17 +210,19 @@ class LightBench {
     return parse_widths(options_.widths);
   }
 
-  void place_receivers(const BuiltScene& scene, const SceneFile& file) {
+  void place_receivers(const SceneFile& file) {
     const auto edge =
         static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(options_.receiver_count))));
-    const View view = choose_view(settings_.view, file, bounds_of(scene.info()), 1.0f);
+    const View view = choose_view(settings_.view, file, bounds_of(scene_->info()), 1.0f);
     const RaySet rays = primary_rays(Camera(view, edge, edge));
     std::vector<kiwami_hit> hits(rays.rays.size());
-    scene.closest_hits(rays.rays, hits);
+    scene_->closest_hits(rays.rays, hits);
     for (size_t i = 0; i < hits.size(); ++i) {
       if (!is_hit(hits[i])) continue;
       const Surface surface = surface_of(rays.rays[i], hits[i]);
       receivers_.points.push_back(receiver_at(surface.point, surface.normal, 0.0));
+      const auto pixel = static_cast<uint32_t>(i);
+      receivers_.pixels.push_back({pixel % edge, pixel / edge, 0});
       if (!(options_.roughness > 0.0)) continue;
       const Vec3 way =
           Vec3{rays.rays[i].direction_x, rays.rays[i].direction_y, rays.rays[i].direction_z};
@@ -197,15 +232,35 @@ class LightBench {
     }
   }
 
+  /// The sum over all lights.
+  double reference_of(size_t receiver) const {
+    double sum = 0.0;
+    std::vector<kiwami_ray> rays;
+    std::vector<double> amounts;
+    for (const EmissiveTriangle& light : lights_) {
+      const double amount = receivers_.contribution(light, receiver);
+      if (!receivers_.scene) {
+        sum += amount;
+      } else if (amount > 0.0) {
+        rays.push_back(receivers_.shadow_ray(light, receiver));
+        amounts.push_back(amount);
+      }
+    }
+    std::vector<uint8_t> occluded(rays.size());
+    if (!rays.empty()) receivers_.scene->any_hits(rays, occluded);
+    for (size_t k = 0; k < rays.size(); ++k) sum += occluded[k] == 0 ? amounts[k] : 0.0;
+    return sum;
+  }
+
   /// Keeps the receivers that get light at all.
   void find_references() {
     size_t kept = 0;
     for (size_t i = 0; i < receivers_.points.size(); ++i) {
-      double sum = 0.0;
-      for (const EmissiveTriangle& light : lights_) sum += receivers_.contribution(light, i);
+      const double sum = reference_of(i);
       if (!(sum > 0.0)) continue;
       references_.push_back(sum);
       receivers_.points[kept] = receivers_.points[i];
+      receivers_.pixels[kept] = receivers_.pixels[i];
       if (!receivers_.surfaces.empty()) {
         receivers_.surfaces[kept] = receivers_.surfaces[i];
         receivers_.lobes[kept] = receivers_.lobes[i];
@@ -213,6 +268,7 @@ class LightBench {
       ++kept;
     }
     receivers_.points.resize(kept);
+    receivers_.pixels.resize(kept);
   }
 
   LightRow row_of(const LightRun& run, double seconds, double power_seconds) const {
@@ -245,6 +301,8 @@ class LightBench {
   std::string name_;
   const LightBenchOptions& options_;
   const BenchSettings& settings_;
+  std::unique_ptr<Device> device_;
+  std::unique_ptr<BuiltScene> scene_;
   std::vector<EmissiveTriangle> lights_;
   Receivers receivers_;
   std::vector<double> references_;  ///< by receiver

@@ -17,6 +17,7 @@ struct LightBenchOptions {
   double share = 0.1;     ///< of the triangles that shine
   uint32_t samples = 16;  ///< choices a receiver at which errors are compared
   uint32_t receiver_count = 4096;
+  bool has_shadows = false;
   double roughness = 0.0;  ///< of glossy receivers; 0: they are diffuse
 };
 
@@ -38,7 +39,7 @@ struct LightRow {
 
 /// Makes a part of a scene's triangles shine and lets the points that the camera sees choose among
 /// them. Errors are those of the sum over all lights of what is reflected of what their middles
-/// send, without occlusion, against the plain loop over all lights.
+/// send, with or without occlusion, against the plain loop over all lights.
 void run_lights(const std::string& scene, const LightBenchOptions& options,
                 const BenchSettings& settings, const std::function<void(const LightRow&)>& on_row);
 

@@ -34,6 +34,7 @@ struct BenchOptions {
   bool change = false;
   bool distributions = false;
   uint32_t tetrahedra = 0;
+  bool binary_layouts = false;
   std::string queries;
   uint32_t max_hits = 8;
   uint32_t edit = 0;
@@ -50,7 +51,7 @@ struct BenchOptions {
   /// In place of a race with a peer, of the scenes.
   bool asks_for_table() const {
     return !pipelines.empty() || edit != 0 || change || !structures.empty() || !queries.empty() ||
-           distributions || lights.is_asked;
+           binary_layouts || distributions || lights.is_asked;
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "kiwami/bench_change.h"
 #include "kiwami/bench_distributions.h"
+#include "kiwami/bench_layouts.h"
 #include "kiwami/bench_lights.h"
 #include "kiwami/bench_pipelines.h"
 #include "kiwami/bench_queries.h"
@@ -145,6 +146,23 @@ int run_distribution_table(const BenchOptions& options, const BenchSettings& set
   return all_right ? 0 : kWrongAnswer;
 }
 
+/// The table of layouts of a binary tree.
+int run_layout_table(const BenchOptions& options, const BenchSettings& settings,
+                     const std::vector<std::string>& scenes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  bool all_right = true;
+  for (const std::string& scene : scenes) {
+    const std::vector<LayoutRow> rows = run_layouts(scene, settings);
+    print_table(rows);
+    for (const LayoutRow& row : rows) {
+      for (const LayoutTrace& trace : row.traces) json.push_back(to_json(row, trace));
+      all_right = all_right && row.wrong.empty();
+    }
+    if (!options.json.empty()) write_file(options.json, json.dump(1) + "\n");
+  }
+  return all_right ? 0 : kWrongAnswer;
+}
+
 }  // namespace
 
 std::optional<int> run_table(const BenchOptions& options, const BenchSettings& settings,
@@ -154,6 +172,7 @@ std::optional<int> run_table(const BenchOptions& options, const BenchSettings& s
   if (options.change) return run_change_table(options, settings, scenes);
   if (!options.structures.empty()) return run_structure_table(options, settings, scenes);
   if (!options.queries.empty()) return run_query_table(options, settings, scenes);
+  if (options.binary_layouts) return run_layout_table(options, settings, scenes);
   if (options.distributions) return run_distribution_table(options, settings, scenes);
   if (options.lights.is_asked) return run_light_table(options, settings, scenes);
   return std::nullopt;

@@ -208,6 +208,8 @@ void add_light_options(CLI::App& command, LightBenchOptions& options) {
   command.add_option("--light-receivers", options.receiver_count, "Points that the camera sees")
       ->check(whole_number(1, 1u << 24))
       ->capture_default_str();
+  command.add_flag("--light-shadows", options.has_shadows,
+                   "A shadow ray for each choice, which counts in the time");
   command
       .add_option("--light-roughness", options.roughness,
                   "Receivers are glossy: alpha of their GGX distribution; 0: they are diffuse")
@@ -251,6 +253,9 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
   command.add_option("--structures", options.structures,
                      "A table of textbook structures in place of a peer, some of grid, kd_tree, "
                      "bih and bvh, next to the library, one ray a call on one thread");
+  command.add_flag("--binary-layouts", options.binary_layouts,
+                   "A table of the layouts of a binary tree by --builder, with boxes and as a "
+                   "dual-split tree: closest hits, one ray after the other on one thread");
   command.add_flag("--change", options.change,
                    "Refits of the scene with moving vertices, in place of rays");
   command.add_flag("--distributions", options.distributions,

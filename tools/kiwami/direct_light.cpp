@@ -49,7 +49,9 @@ void DirectLight::choose_targets(std::span<const kiwami_light_receiver> receiver
   std::vector<kiwami_light_choice> choices(receivers.size() * method_.max_choices);
   std::vector<kiwami_light_lobe> lobes;
   for (const GlossySurface& surface : surfaces) lobes.push_back(surface.lobe());
-  set_.sample(method_, receivers, lobes, choices);
+  std::vector<kiwami_light_pixel> pixels;
+  for (const size_t source : sources) pixels.push_back(batch.pixels[source]);
+  set_.sample(method_, receivers, {lobes, pixels}, choices);
   for (size_t i = 0; i < receivers.size(); ++i) {
     const Vec3 at{receivers[i].position[0], receivers[i].position[1], receivers[i].position[2]};
     const Vec3 normal{receivers[i].normal[0], receivers[i].normal[1], receivers[i].normal[2]};
@@ -115,6 +117,10 @@ void DirectLight::expose(Tracing& tracing, const Camera& camera) {
   std::vector<double> sums(batch.rays.size(), 0.0);
   const uint32_t samples = std::max(1u, 16 / method_.max_choices);
   for (uint32_t sample = 0; sample < samples; ++sample) {
+    for (size_t i = 0; i < batch.pixels.size(); ++i) {
+      const auto pixel = static_cast<uint32_t>(i);
+      batch.pixels[i] = {pixel % camera.width(), pixel / camera.width(), sample};
+    }
     shade(tracing, batch);
     for (size_t i = 0; i < sums.size(); ++i) {
       sums[i] += static_cast<double>(batch.colors[i].x) / samples;

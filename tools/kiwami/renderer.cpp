@@ -39,6 +39,8 @@ void start_samples(const Camera& camera, size_t first_pixel, uint32_t sample,
       batch.rays[i] = camera.ray(x, y);
       batch.rays[i].time = width > 0.0f ? open + width * random.uniform() : open;
       batch.randoms[i] = random;
+      batch.pixels[i] = {static_cast<uint32_t>(pixel % camera.width()),
+                         static_cast<uint32_t>(pixel / camera.width()), sample};
     }
   });
 }

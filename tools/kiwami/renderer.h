@@ -32,9 +32,10 @@ struct SampleBatch {
   std::vector<kiwami_ray> rays;
   std::vector<Random> randoms;
   std::vector<Vec3> colors;
+  std::vector<kiwami_light_pixel> pixels;  ///< of which picture's samples they are
 
   explicit SampleBatch(size_t size)
-      : rays(size), randoms(size, Random(0)), colors(size, Vec3{0, 0, 0}) {}
+      : rays(size), randoms(size, Random(0)), colors(size, Vec3{0, 0, 0}), pixels(size) {}
 };
 
 /// Traces batches and counts what that took.

@@ -30,6 +30,10 @@ const std::vector<LightMethodName>& light_methods() {
       {"lazy_roulette", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 32},
       {"lazy_scrambled", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 32, KIWAMI_LIGHT_LOBE_COSINE,
        KIWAMI_LIGHT_ORDER_SCRAMBLED},
+      {"roulette_dithered", KIWAMI_LIGHT_METHOD_ROULETTE, 32, KIWAMI_LIGHT_LOBE_COSINE,
+       KIWAMI_LIGHT_ORDER_XOR, false, KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE},
+      {"lazy_dithered", KIWAMI_LIGHT_METHOD_LAZY_ROULETTE, 32, KIWAMI_LIGHT_LOBE_COSINE,
+       KIWAMI_LIGHT_ORDER_XOR, false, KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE},
       {"tree_glossy", KIWAMI_LIGHT_METHOD_TREE, 1, KIWAMI_LIGHT_LOBE_GLOSSY},
       {"tree_mixed", KIWAMI_LIGHT_METHOD_TREE, 2, KIWAMI_LIGHT_LOBE_GLOSSY, KIWAMI_LIGHT_ORDER_XOR,
        true},
@@ -149,15 +153,16 @@ LightSet::LightSet(const Device& device, const std::vector<EmissiveTriangle>& tr
 
 void LightSet::sample(const LightMethodName& method,
                       std::span<const kiwami_light_receiver> receivers,
-                      std::span<const kiwami_light_lobe> lobes,
-                      std::span<kiwami_light_choice> choices) const {
+                      const ReceiverExtras& extras, std::span<kiwami_light_choice> choices) const {
   kiwami_light_query query;
   throw_on_error(kiwami_light_query_init(&query, sizeof query));
   query.method = method.method;
   query.max_choices = method.max_choices;
   query.lobe = method.lobe;
   query.order = method.order;
-  query.lobes = lobes.data();
+  query.lobes = extras.lobes.data();
+  query.sequence = method.sequence;
+  query.pixels = extras.pixels.data();
   if (method.is_mixed) return sample_mixed(query, receivers, choices);
   throw_on_error(
       kiwami_light_sample(tree_, receivers.data(), 0, choices.data(), 0, receivers.size(), &query));

@@ -20,6 +20,7 @@ struct LightMethodName {
   /// balance heuristic (E. Veach, L. J. Guibas, "Optimally Combining Sampling Techniques for Monte
   /// Carlo Rendering", SIGGRAPH 1995).
   bool is_mixed = false;
+  uint32_t sequence = KIWAMI_LIGHT_SEQUENCE_RANDOM;
 
   /// Whether it is for glossy receivers alone.
   bool is_glossy() const { return lobe == KIWAMI_LIGHT_LOBE_GLOSSY; }
@@ -70,6 +71,12 @@ struct GlossySurface {
 /// radiance that differs by up to 64, decided by hashes of mesh and triangle.
 std::vector<EmissiveTriangle> choose_emissive(const SceneFile& file, double share);
 
+/// What belongs to receivers beside themselves: each one a receiver, or none.
+struct ReceiverExtras {
+  std::span<const kiwami_light_lobe> lobes;    ///< for glossy methods
+  std::span<const kiwami_light_pixel> pixels;  ///< for dithered ones
+};
+
 /// Owns a set of these lights, light i being triangle i, committed.
 class LightSet {
  public:
@@ -80,11 +87,10 @@ class LightSet {
   LightSet& operator=(const LightSet&) = delete;
 
   const kiwami_light_tree_info& info() const { return info_; }
-  /// As many choices for each receiver as the method has at most. lobes: one a receiver, for glossy
-  /// methods. Of mixed ones, probabilities are what contributions are to be divided by.
+  /// As many choices for each receiver as the method has at most. Of mixed methods, probabilities
+  /// are what contributions are to be divided by.
   void sample(const LightMethodName& method, std::span<const kiwami_light_receiver> receivers,
-              std::span<const kiwami_light_lobe> lobes,
-              std::span<kiwami_light_choice> choices) const;
+              const ReceiverExtras& extras, std::span<kiwami_light_choice> choices) const;
 
  private:
   void sample_mixed(kiwami_light_query query, std::span<const kiwami_light_receiver> receivers,

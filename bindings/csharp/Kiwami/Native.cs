@@ -367,6 +367,30 @@ internal unsafe struct kiwami_ray_visits {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_binary_tree_info {
+  public uint struct_size;
+  public uint layout;
+  public ulong node_count;
+  public ulong split_count;
+  public ulong carve_count;
+  public ulong leaf_count;
+  public ulong primitive_count;
+  public ulong node_bytes;
+  public ulong bytes;
+  public const int Size = 64;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_binary_visits {
+  public uint struct_size;
+  public uint reserved;
+  public ulong node_visits;
+  public ulong plane_tests;
+  public ulong leaf_visits;
+  public const int Size = 32;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_distribution_desc {
   public uint struct_size;
   public uint method;
@@ -600,6 +624,14 @@ internal unsafe struct kiwami_light_lobe {
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_light_pixel {
+  public uint x;
+  public uint y;
+  public uint sample;
+  public const int Size = 12;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_light_query {
   public uint struct_size;
   public uint flags;
@@ -611,7 +643,11 @@ internal unsafe struct kiwami_light_query {
   public float reach;
   public IntPtr lobes;
   public ulong lobe_stride;
-  public const int Size = 48;
+  public uint sequence;
+  public uint sequence_seed;
+  public IntPtr pixels;
+  public ulong pixel_stride;
+  public const int Size = 72;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -946,6 +982,8 @@ internal static class Native {
   public const uint KIWAMI_MEASURE_WITHOUT_EPO = 1;
   public const uint KIWAMI_COUNT_CLOSEST_HIT = 0;
   public const uint KIWAMI_COUNT_ANY_HIT = 1;
+  public const uint KIWAMI_BINARY_LAYOUT_BOXES = 0;
+  public const uint KIWAMI_BINARY_LAYOUT_DUAL_SPLIT = 1;
   public const uint KIWAMI_DISTRIBUTION_RADIX_TREE_FOREST = 0;
   public const uint KIWAMI_DISTRIBUTION_ALIAS_TABLE = 1;
   public const uint KIWAMI_EXPORT_BINARY = 1;
@@ -984,6 +1022,8 @@ internal static class Native {
   public const uint KIWAMI_LIGHT_LOBE_GLOSSY = 2;
   public const uint KIWAMI_LIGHT_ORDER_XOR = 0;
   public const uint KIWAMI_LIGHT_ORDER_SCRAMBLED = 1;
+  public const uint KIWAMI_LIGHT_SEQUENCE_RANDOM = 0;
+  public const uint KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE = 1;
   public const uint KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
   public const uint KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   public const uint KIWAMI_MAX_TIME_STEPS = 129;
@@ -1180,6 +1220,24 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_scene_count_visits(IntPtr scene, IntPtr rays, UIntPtr ray_stride, UIntPtr count, uint query, IntPtr visits, IntPtr each, UIntPtr each_stride);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_binary_tree_create(IntPtr bvh, uint layout, IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_binary_tree_retain(IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern void kiwami_binary_tree_release(IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_binary_tree_get_info(IntPtr tree, IntPtr info);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_binary_tree_validate(IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_binary_tree_closest_hit(IntPtr tree, IntPtr rays, UIntPtr ray_stride, IntPtr hits, UIntPtr hit_stride, UIntPtr count, IntPtr visits);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_distribution_desc_init(IntPtr desc, UIntPtr size);

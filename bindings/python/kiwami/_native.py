@@ -107,6 +107,8 @@ KIWAMI_QUERY_CALLING_THREAD = 1
 KIWAMI_MEASURE_WITHOUT_EPO = 1
 KIWAMI_COUNT_CLOSEST_HIT = 0
 KIWAMI_COUNT_ANY_HIT = 1
+KIWAMI_BINARY_LAYOUT_BOXES = 0
+KIWAMI_BINARY_LAYOUT_DUAL_SPLIT = 1
 KIWAMI_DISTRIBUTION_RADIX_TREE_FOREST = 0
 KIWAMI_DISTRIBUTION_ALIAS_TABLE = 1
 KIWAMI_EXPORT_BINARY = 1
@@ -145,6 +147,8 @@ KIWAMI_LIGHT_LOBE_TANGENT_SPHERE = 1
 KIWAMI_LIGHT_LOBE_GLOSSY = 2
 KIWAMI_LIGHT_ORDER_XOR = 0
 KIWAMI_LIGHT_ORDER_SCRAMBLED = 1
+KIWAMI_LIGHT_SEQUENCE_RANDOM = 0
+KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE = 1
 KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1
 KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1
 KIWAMI_MAX_TIME_STEPS = 129
@@ -537,6 +541,30 @@ class kiwami_ray_visits(ctypes.Structure):
     ]
 
 
+class kiwami_binary_tree_info(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("layout", ctypes.c_uint32),
+        ("node_count", ctypes.c_uint64),
+        ("split_count", ctypes.c_uint64),
+        ("carve_count", ctypes.c_uint64),
+        ("leaf_count", ctypes.c_uint64),
+        ("primitive_count", ctypes.c_uint64),
+        ("node_bytes", ctypes.c_uint64),
+        ("bytes", ctypes.c_uint64),
+    ]
+
+
+class kiwami_binary_visits(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+        ("node_visits", ctypes.c_uint64),
+        ("plane_tests", ctypes.c_uint64),
+        ("leaf_visits", ctypes.c_uint64),
+    ]
+
+
 class kiwami_distribution_desc(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
@@ -770,6 +798,14 @@ class kiwami_light_lobe(ctypes.Structure):
     ]
 
 
+class kiwami_light_pixel(ctypes.Structure):
+    _fields_ = [
+        ("x", ctypes.c_uint32),
+        ("y", ctypes.c_uint32),
+        ("sample", ctypes.c_uint32),
+    ]
+
+
 class kiwami_light_query(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
@@ -782,6 +818,10 @@ class kiwami_light_query(ctypes.Structure):
         ("reach", ctypes.c_float),
         ("lobes", ctypes.c_void_p),
         ("lobe_stride", ctypes.c_uint64),
+        ("sequence", ctypes.c_uint32),
+        ("sequence_seed", ctypes.c_uint32),
+        ("pixels", ctypes.c_void_p),
+        ("pixel_stride", ctypes.c_uint64),
     ]
 
 
@@ -1036,6 +1076,8 @@ SIZES = {
     kiwami_bvh_node_measures: 24,
     kiwami_visits: 48,
     kiwami_ray_visits: 8,
+    kiwami_binary_tree_info: 64,
+    kiwami_binary_visits: 32,
     kiwami_distribution_desc: 32,
     kiwami_distribution_info: 48,
     kiwami_draw: 16,
@@ -1055,7 +1097,8 @@ SIZES = {
     kiwami_light_choice: 24,
     kiwami_light_name: 8,
     kiwami_light_lobe: 16,
-    kiwami_light_query: 48,
+    kiwami_light_pixel: 12,
+    kiwami_light_query: 72,
     kiwami_moving_mesh_desc: 96,
     kiwami_quaternion_transform: 64,
     kiwami_moving_instances_desc: 112,
@@ -1324,6 +1367,30 @@ def declare(library):
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_size_t,
+    ]
+    library.kiwami_binary_tree_create.restype = ctypes.c_int32
+    library.kiwami_binary_tree_create.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_uint32,
+        ctypes.c_void_p,
+    ]
+    library.kiwami_binary_tree_retain.restype = None
+    library.kiwami_binary_tree_retain.argtypes = [ctypes.c_void_p]
+    library.kiwami_binary_tree_release.restype = None
+    library.kiwami_binary_tree_release.argtypes = [ctypes.c_void_p]
+    library.kiwami_binary_tree_get_info.restype = ctypes.c_int32
+    library.kiwami_binary_tree_get_info.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_binary_tree_validate.restype = ctypes.c_int32
+    library.kiwami_binary_tree_validate.argtypes = [ctypes.c_void_p]
+    library.kiwami_binary_tree_closest_hit.restype = ctypes.c_int32
+    library.kiwami_binary_tree_closest_hit.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
     ]
     library.kiwami_distribution_desc_init.restype = ctypes.c_int32
     library.kiwami_distribution_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]

@@ -111,6 +111,8 @@ pub const KIWAMI_QUERY_CALLING_THREAD: u32 = 1;
 pub const KIWAMI_MEASURE_WITHOUT_EPO: u32 = 1;
 pub const KIWAMI_COUNT_CLOSEST_HIT: u32 = 0;
 pub const KIWAMI_COUNT_ANY_HIT: u32 = 1;
+pub const KIWAMI_BINARY_LAYOUT_BOXES: u32 = 0;
+pub const KIWAMI_BINARY_LAYOUT_DUAL_SPLIT: u32 = 1;
 pub const KIWAMI_DISTRIBUTION_RADIX_TREE_FOREST: u32 = 0;
 pub const KIWAMI_DISTRIBUTION_ALIAS_TABLE: u32 = 1;
 pub const KIWAMI_EXPORT_BINARY: u32 = 1;
@@ -149,6 +151,8 @@ pub const KIWAMI_LIGHT_LOBE_TANGENT_SPHERE: u32 = 1;
 pub const KIWAMI_LIGHT_LOBE_GLOSSY: u32 = 2;
 pub const KIWAMI_LIGHT_ORDER_XOR: u32 = 0;
 pub const KIWAMI_LIGHT_ORDER_SCRAMBLED: u32 = 1;
+pub const KIWAMI_LIGHT_SEQUENCE_RANDOM: u32 = 0;
+pub const KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE: u32 = 1;
 pub const KIWAMI_LIGHT_QUERY_CALLING_THREAD: u32 = 1;
 pub const KIWAMI_MOVING_MESH_SHARE_BUFFERS: u32 = 1;
 pub const KIWAMI_MAX_TIME_STEPS: u32 = 129;
@@ -165,6 +169,11 @@ pub const KIWAMI_SHAPES_SHARE_BUFFERS: u32 = 1;
 pub const KIWAMI_TETRAHEDRA_BOXES: u32 = 0;
 pub const KIWAMI_TETRAHEDRA_FACES: u32 = 1;
 pub const KIWAMI_USER_HITS_PER_PRIMITIVE: u32 = 4;
+
+#[repr(C)]
+pub struct kiwami_binary_tree {
+    _private: [u8; 0],
+}
 
 #[repr(C)]
 pub struct kiwami_bvh {
@@ -586,6 +595,32 @@ const _: () = assert!(std::mem::size_of::<kiwami_ray_visits>() == 8);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct kiwami_binary_tree_info {
+    pub struct_size: u32,
+    pub layout: u32,
+    pub node_count: u64,
+    pub split_count: u64,
+    pub carve_count: u64,
+    pub leaf_count: u64,
+    pub primitive_count: u64,
+    pub node_bytes: u64,
+    pub bytes: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_binary_tree_info>() == 64);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_binary_visits {
+    pub struct_size: u32,
+    pub reserved: u32,
+    pub node_visits: u64,
+    pub plane_tests: u64,
+    pub leaf_visits: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_binary_visits>() == 32);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct kiwami_distribution_desc {
     pub struct_size: u32,
     pub method: u32,
@@ -838,6 +873,15 @@ const _: () = assert!(std::mem::size_of::<kiwami_light_lobe>() == 16);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct kiwami_light_pixel {
+    pub x: u32,
+    pub y: u32,
+    pub sample: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_light_pixel>() == 12);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct kiwami_light_query {
     pub struct_size: u32,
     pub flags: u32,
@@ -849,8 +893,12 @@ pub struct kiwami_light_query {
     pub reach: f32,
     pub lobes: *const kiwami_light_lobe,
     pub lobe_stride: u64,
+    pub sequence: u32,
+    pub sequence_seed: u32,
+    pub pixels: *const kiwami_light_pixel,
+    pub pixel_stride: u64,
 }
-const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 48);
+const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 72);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -1153,6 +1201,12 @@ extern "C" {
     pub fn kiwami_bvh_measure_desc_init(desc: *mut kiwami_bvh_measure_desc, size: usize) -> kiwami_result;
     pub fn kiwami_bvh_measure(bvh: *const kiwami_bvh, desc: *const kiwami_bvh_measure_desc, measures: *mut kiwami_bvh_measures, nodes: *mut kiwami_bvh_node_measures, stride: usize) -> kiwami_result;
     pub fn kiwami_scene_count_visits(scene: *const kiwami_scene, rays: *const kiwami_ray, ray_stride: usize, count: usize, query: u32, visits: *mut kiwami_visits, each: *mut kiwami_ray_visits, each_stride: usize) -> kiwami_result;
+    pub fn kiwami_binary_tree_create(bvh: *const kiwami_bvh, layout: u32, tree: *mut *mut kiwami_binary_tree) -> kiwami_result;
+    pub fn kiwami_binary_tree_retain(tree: *mut kiwami_binary_tree);
+    pub fn kiwami_binary_tree_release(tree: *mut kiwami_binary_tree);
+    pub fn kiwami_binary_tree_get_info(tree: *const kiwami_binary_tree, info: *mut kiwami_binary_tree_info) -> kiwami_result;
+    pub fn kiwami_binary_tree_validate(tree: *const kiwami_binary_tree) -> kiwami_result;
+    pub fn kiwami_binary_tree_closest_hit(tree: *const kiwami_binary_tree, rays: *const kiwami_ray, ray_stride: usize, hits: *mut kiwami_hit, hit_stride: usize, count: usize, visits: *mut kiwami_binary_visits) -> kiwami_result;
     pub fn kiwami_distribution_desc_init(desc: *mut kiwami_distribution_desc, size: usize) -> kiwami_result;
     pub fn kiwami_distribution_create(device: *mut kiwami_device, desc: *const kiwami_distribution_desc, distribution: *mut *mut kiwami_distribution) -> kiwami_result;
     pub fn kiwami_distribution_retain(distribution: *mut kiwami_distribution);

@@ -112,6 +112,8 @@ final class Native {
   static final int KIWAMI_MEASURE_WITHOUT_EPO = 1;
   static final int KIWAMI_COUNT_CLOSEST_HIT = 0;
   static final int KIWAMI_COUNT_ANY_HIT = 1;
+  static final int KIWAMI_BINARY_LAYOUT_BOXES = 0;
+  static final int KIWAMI_BINARY_LAYOUT_DUAL_SPLIT = 1;
   static final int KIWAMI_DISTRIBUTION_RADIX_TREE_FOREST = 0;
   static final int KIWAMI_DISTRIBUTION_ALIAS_TABLE = 1;
   static final int KIWAMI_EXPORT_BINARY = 1;
@@ -150,6 +152,8 @@ final class Native {
   static final int KIWAMI_LIGHT_LOBE_GLOSSY = 2;
   static final int KIWAMI_LIGHT_ORDER_XOR = 0;
   static final int KIWAMI_LIGHT_ORDER_SCRAMBLED = 1;
+  static final int KIWAMI_LIGHT_SEQUENCE_RANDOM = 0;
+  static final int KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE = 1;
   static final int KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
   static final int KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   static final int KIWAMI_MAX_TIME_STEPS = 129;
@@ -490,6 +494,30 @@ final class Native {
     static final int LEAF_VISITS = 4;
   }
 
+  /** Offsets of kiwami_binary_tree_info. */
+  static final class BinaryTreeInfo {
+    static final int STRUCT_BYTES = 64;
+    static final int STRUCT_SIZE = 0;
+    static final int LAYOUT = 4;
+    static final int NODE_COUNT = 8;
+    static final int SPLIT_COUNT = 16;
+    static final int CARVE_COUNT = 24;
+    static final int LEAF_COUNT = 32;
+    static final int PRIMITIVE_COUNT = 40;
+    static final int NODE_BYTES = 48;
+    static final int BYTES = 56;
+  }
+
+  /** Offsets of kiwami_binary_visits. */
+  static final class BinaryVisits {
+    static final int STRUCT_BYTES = 32;
+    static final int STRUCT_SIZE = 0;
+    static final int RESERVED = 4;
+    static final int NODE_VISITS = 8;
+    static final int PLANE_TESTS = 16;
+    static final int LEAF_VISITS = 24;
+  }
+
   /** Offsets of kiwami_distribution_desc. */
   static final class DistributionDesc {
     static final int STRUCT_BYTES = 32;
@@ -723,9 +751,17 @@ final class Native {
     static final int ROUGHNESS = 12;
   }
 
+  /** Offsets of kiwami_light_pixel. */
+  static final class LightPixel {
+    static final int STRUCT_BYTES = 12;
+    static final int X = 0;
+    static final int Y = 4;
+    static final int SAMPLE = 8;
+  }
+
   /** Offsets of kiwami_light_query. */
   static final class LightQuery {
-    static final int STRUCT_BYTES = 48;
+    static final int STRUCT_BYTES = 72;
     static final int STRUCT_SIZE = 0;
     static final int FLAGS = 4;
     static final int METHOD = 8;
@@ -736,6 +772,10 @@ final class Native {
     static final int REACH = 28;
     static final int LOBES = 32;
     static final int LOBE_STRIDE = 40;
+    static final int SEQUENCE = 48;
+    static final int SEQUENCE_SEED = 52;
+    static final int PIXELS = 56;
+    static final int PIXEL_STRIDE = 64;
   }
 
   /** Offsets of kiwami_moving_mesh_desc. */
@@ -1087,6 +1127,18 @@ final class Native {
   static native int kiwami_bvh_measure(Pointer bvh, Pointer desc, Pointer measures, Pointer nodes, long stride);
 
   static native int kiwami_scene_count_visits(Pointer scene, Pointer rays, long rayStride, long count, int query, Pointer visits, Pointer each, long eachStride);
+
+  static native int kiwami_binary_tree_create(Pointer bvh, int layout, Pointer tree);
+
+  static native void kiwami_binary_tree_retain(Pointer tree);
+
+  static native void kiwami_binary_tree_release(Pointer tree);
+
+  static native int kiwami_binary_tree_get_info(Pointer tree, Pointer info);
+
+  static native int kiwami_binary_tree_validate(Pointer tree);
+
+  static native int kiwami_binary_tree_closest_hit(Pointer tree, Pointer rays, long rayStride, Pointer hits, long hitStride, long count, Pointer visits);
 
   static native int kiwami_distribution_desc_init(Pointer desc, long size);
 
