@@ -157,11 +157,13 @@ double PerfectLightTree::leaf_bound(const RouletteReceiver& receiver, const Node
   return static_cast<double>(node.peak) * lobe_of(receiver, view, least_square_) / square;
 }
 
-double PerfectLightTree::bound(const RouletteReceiver& receiver, const Node& node) const {
+double PerfectLightTree::limit(const RouletteReceiver& receiver, const Node& node, double strength,
+                               double least) const {
   const BoxView view(receiver, node.centre, node.half_extent);
   const double square = std::max(view.nearest_square, least_square_);
-  return kBoundSlack * static_cast<double>(node.peak) * lobe_of(receiver, view, least_square_) /
-         square;
+  const double most = kBoundSlack * strength * static_cast<double>(node.peak);
+  // No lobe is above 1: many nodes fail by their distance alone.
+  return least * square < most ? most * lobe_of(receiver, view, least_square_) / square : 0.0;
 }
 
 double PerfectLightTree::strength_for(const RouletteReceiver& receiver, double count) const {

@@ -100,7 +100,10 @@ class PerfectLightTree {
 
   static Node node_of(const LightCluster& cluster, double scale);
   static Node joined(const Node& left, const Node& right);
-  double bound(const RouletteReceiver& receiver, const Node& node) const;
+  /// Lights below whose numbers are not less than this are not accepted; 0 where none is whose
+  /// number is at least `least`.
+  double limit(const RouletteReceiver& receiver, const Node& node, double strength,
+               double least) const;
   double leaf_bound(const RouletteReceiver& receiver, const Node& node) const;
 
   Array<Node> nodes_;       ///< the children of i are 2i + 1 and 2i + 2
@@ -122,19 +125,20 @@ void PerfectLightTree::play(const RouletteReceiver& receiver, double strength,
   uint32_t size = 0;
   stack[size++] = {0, 0, numbers.root()};
   while (size != 0) {
-    const Task task = stack[--size];
+    Task task = stack[--size];
     const uint32_t below = level_count_ - task.level;
     const size_t number = (size_t{1} << task.level) - 1 + task.prefix;
     const Node& node = nodes_[number];
     if ((node.link_mask & receiver.link_mask) == 0) continue;
     const double least = numbers.least(task.value, below);
+    const double most =
+        below == 0 ? strength * leaf_bound(receiver, node) : limit(receiver, node, strength, least);
+    if (!(least < most)) continue;
+    numbers.settle(task.value, below);
+    if (!(numbers.least(task.value, below) < most)) continue;
     if (below == 0) {
-      const double probability = strength * leaf_bound(receiver, node);
-      if (least < probability) {
-        accept(AcceptedLeaf{leaves_[task.prefix],
-                            static_cast<float>(probability < 1.0 ? probability : 1.0)});
-      }
-    } else if (least < strength * bound(receiver, node)) {
+      accept(AcceptedLeaf{leaves_[task.prefix], static_cast<float>(most < 1.0 ? most : 1.0)});
+    } else {
       typename Numbers::Value values[2];
       numbers.divide(task.value, number, below, values);
       stack[size++] = {2 * task.prefix + 1, task.level + 1, values[1]};

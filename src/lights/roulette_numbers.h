@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The random numbers that lights are compared with in a hierarchical Russian roulette, known by the
-// least of a subtree before the others are: for leaves of a perfect binary tree.
+// least of a subtree before the others are: for leaves of a perfect binary tree. A value stands for
+// the numbers of a subtree; least() of it is their least, or, until settle() has been called, no
+// more than that.
 #pragma once
 
 #include <cmath>
@@ -46,6 +48,7 @@ class LazyNumbers {
         is_scrambled_(is_scrambled) {}
 
   Value root() const { return 0; }
+  void settle(Value&, uint32_t) const {}
   double least(Value value, uint32_t below) const {
     return (static_cast<double>(uint64_t{value} << below) + rest_) / count_;
   }
@@ -85,19 +88,30 @@ constexpr uint64_t kFirstNumber = kNodeStream - 1;
 template <typename Source>
 class IndependentNumbersOf {
  public:
-  using Value = double;  ///< the least of a subtree
+  /// The least number of a subtree, or that of the subtree above and the node there, of whose number
+  /// this one is to be made: most subtrees are not visited whatever theirs is, so it is made late.
+  struct Value {
+    double least;
+    uint64_t node;
+  };
 
   IndependentNumbersOf(const Source& source, uint32_t level_count)
       : source_(source),
         root_(least_of_uniform(number_of_bits(source.bits(kFirstNumber)), level_count)) {}
 
-  Value root() const { return root_; }
-  double least(Value value, uint32_t) const { return value; }
-  void divide(Value value, size_t node, uint32_t below, Value (&children)[2]) const {
+  Value root() const { return {root_, kSettled}; }
+  double least(const Value& value, uint32_t) const { return value.least; }
+  void settle(Value& value, uint32_t below) const {
+    if (value.node == kSettled) return;
+    const uint64_t bits = source_.bits(kNodeStream + value.node);
+    value.least += (1.0 - value.least) * least_of_uniform(number_of_bits(bits), below);
+    value.node = kSettled;
+  }
+  /// Of a settled value.
+  void divide(const Value& value, size_t node, uint32_t, Value (&children)[2]) const {
     const uint64_t bits = source_.bits(kNodeStream + node);
-    const double other = least_of_uniform(number_of_bits(bits), below - 1);
     children[bits & 1] = value;
-    children[(bits & 1) ^ 1] = value + (1.0 - value) * other;
+    children[(bits & 1) ^ 1] = {value.least, node};
   }
 
   /// 1 - (1 - u)^(1 / 2^n), each square root of which is taken as 1 - sqrt(1 - u) = u / (1 + sqrt(1
@@ -108,6 +122,8 @@ class IndependentNumbersOf {
   }
 
  private:
+  static constexpr uint64_t kSettled = ~uint64_t{0};
+
   Source source_;
   double root_;
 };

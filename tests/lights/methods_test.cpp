@@ -359,7 +359,10 @@ TEST(LightSplitting, ThresholdSaysHowMuchIsSplit) {
 template <typename Numbers>
 void collect_numbers(const Numbers& numbers, typename Numbers::Value value, size_t node,
                      uint32_t below, std::vector<double>& leaves) {
+  const double before = numbers.least(value, below);
+  numbers.settle(value, below);
   const double least = numbers.least(value, below);
+  EXPECT_LE(before, least);
   if (below == 0) return leaves.push_back(least);
   typename Numbers::Value children[2];
   numbers.divide(value, node, below, children);
