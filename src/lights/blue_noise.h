@@ -15,7 +15,8 @@ constexpr uint32_t kBlueNoiseEdge = 64;
 extern const uint16_t kBlueNoiseTile[kBlueNoiseEdge * kBlueNoiseEdge];
 
 /// The numbers of one sample of a pixel: for each of many dimensions a low-discrepancy sequence over
-/// the samples (multiples of the golden ratio), shifted around [0, 1) by a tile of blue noise over
+/// the samples (multiples of an irrational number: the golden ratio in the first dimension, any in
+/// each other, as equal ones would rise together), shifted around [0, 1) by a tile of blue noise over
 /// the pixels, which lies elsewhere in each dimension. Over all seeds each number is uniform. The
 /// random source of "Blue-Noise Dithered QMC Hierarchical Russian Roulette" (2019), by the additive
 /// recurrence and the dithered shifts of I. Georgiev and M. Fajardo, "Blue-Noise Dithered Sampling",
@@ -34,7 +35,8 @@ class DitheredSource {
     const uint64_t pixel = uint64_t{pixel_.y} << 32 | pixel_.x;
     const uint64_t rest = mixed(dimension, mixed(pixel, seed_)) >> 12;
     constexpr uint64_t kGoldenRatio = 0x9E3779B97F4A7C15u;
-    return (rank << 52 | rest) + pixel_.sample * kGoldenRatio + mixed(~dimension, seed_);
+    const uint64_t step = dimension == 2 * kFirstNumber ? kGoldenRatio : mixed(dimension, ~seed_);
+    return (rank << 52 | rest) + pixel_.sample * step + mixed(~dimension, seed_);
   }
 
   /// As mixed_bits: a number in the first 53 bits, and a last bit that does not depend on them.

@@ -32,18 +32,38 @@ TEST(RouletteNumbers, DitheredOnesAreUniformOverSeedsAndSamples) {
     }
     EXPECT_LT(square, 60.0) << "dimension " << dimension << ", 15 degrees of freedom";
     EXPECT_NEAR(last_bits, draws / 2, 2.5 * std::sqrt(draws));
-    // The samples of a pixel: no two of n are nearer than a third of 1 / n.
-    constexpr uint32_t kSamples = 64;
-    std::vector<double> numbers;
+  }
+}
+
+TEST(RouletteNumbers, DitheredSamplesOfAPixelAreSpread) {
+  // Of the first number no two of n are nearer than a third of 1 / n; of all others each interval
+  // has about its share, and two of them do not rise together.
+  constexpr uint32_t kSamples = 64;
+  std::vector<double> first;
+  for (uint32_t sample = 0; sample < kSamples; ++sample) {
+    const kiwami::DitheredSource source({9, 1, sample}, 7);
+    first.push_back(kiwami::number_of_bits(source.bits(kiwami::kFirstNumber)));
+  }
+  std::sort(first.begin(), first.end());
+  for (size_t i = 1; i < kSamples; ++i) EXPECT_GT(first[i] - first[i - 1], 0.3 / kSamples);
+  double unevenness = 0.0, correlation = 0.0;
+  constexpr int kDimensions = 200;
+  for (uint64_t dimension = 0; dimension < kDimensions; ++dimension) {
+    double quarters[4] = {}, product = 0.0;
     for (uint32_t sample = 0; sample < kSamples; ++sample) {
       const kiwami::DitheredSource source({9, 1, sample}, 7);
-      numbers.push_back(kiwami::number_of_bits(source.fraction(dimension)));
+      const double number = kiwami::number_of_bits(source.bits(dimension));
+      quarters[static_cast<size_t>(4.0 * number)] += 1.0;
+      product += (number - 0.5) * (kiwami::number_of_bits(source.bits(dimension + 1)) - 0.5);
     }
-    std::sort(numbers.begin(), numbers.end());
-    for (size_t i = 1; i < kSamples; ++i) {
-      EXPECT_GT(numbers[i] - numbers[i - 1], 0.3 / kSamples);
+    for (const double count : quarters) {
+      unevenness += (count - kSamples / 4.0) * (count - kSamples / 4.0) / kSamples / kDimensions;
     }
+    correlation += std::fabs(12.0 * product / kSamples) / kDimensions;
   }
+  // Independent numbers have 0.75 and about 0.1.
+  EXPECT_LT(unevenness, 0.5);
+  EXPECT_LT(correlation, 0.3);
 }
 
 /// The estimates of a picture's pixels: one light field over a plane that they look at.
