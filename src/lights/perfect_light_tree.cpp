@@ -40,8 +40,8 @@ struct BoxView {
     }
   }
 
-  /// A bound of the cosine between a direction and those to the box; 0 where it is negative.
-  double cosine(const float (&direction)[3], bool is_two_sided, double least_square) const {
+  /// By how much the box rises along a direction, at most.
+  double top(const float (&direction)[3], bool is_two_sided) const {
     double height = 0.0, rise = 0.0, size = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
       const double along = static_cast<double>(direction[axis]);
@@ -50,9 +50,14 @@ struct BoxView {
       size += std::fabs(along) * std::fabs(offset[axis]);
     }
     if (is_two_sided) height = std::fabs(height);
-    const double top = height + rise + kSumSlack * (size + rise);
-    if (!(top > 0.0)) return 0.0;
-    return std::min(1.0, top / std::sqrt(std::max(nearest_square, least_square)));
+    return height + rise + kSumSlack * (size + rise);
+  }
+
+  /// A bound of the cosine between a direction and those to the box; 0 where it is negative.
+  double cosine(const float (&direction)[3], bool is_two_sided, double least_square) const {
+    const double most = top(direction, is_two_sided);
+    if (!(most > 0.0)) return 0.0;
+    return std::min(1.0, most / std::sqrt(std::max(nearest_square, least_square)));
   }
 };
 
@@ -76,6 +81,28 @@ double lobe_of(const RouletteReceiver& receiver, const BoxView& view, double lea
   const double e = receiver.eccentricity;
   const double radius = (1.0 - e) / (1.0 - e * view.cosine(receiver.axis, false, least_square));
   return radius * radius;
+}
+
+/// The square of the same, without a root. square: of the distance, at least least_square.
+double squared_lobe_of(const RouletteReceiver& receiver, const BoxView& view, double square) {
+  double squared_cosine = 1.0;
+  if (receiver.has_normal) {
+    const double top = view.top(receiver.normal, receiver.takes_both_sides);
+    if (!(top > 0.0)) return 0.0;
+    squared_cosine = std::min(1.0, top * top / square);
+  }
+  switch (receiver.lobe) {
+    case RouletteLobe::kSphere:
+      return 1.0;
+    case RouletteLobe::kCosine:
+      return squared_cosine;
+    case RouletteLobe::kTangentSphere:
+      return squared_cosine * squared_cosine;
+    case RouletteLobe::kEllipsoid:
+      break;
+  }
+  const double lobe = lobe_of(receiver, view, square);
+  return lobe * lobe;
 }
 
 }  // namespace
@@ -157,13 +184,15 @@ double PerfectLightTree::leaf_bound(const RouletteReceiver& receiver, const Node
   return static_cast<double>(node.peak) * lobe_of(receiver, view, least_square_) / square;
 }
 
-double PerfectLightTree::limit(const RouletteReceiver& receiver, const Node& node, double strength,
-                               double least) const {
+double PerfectLightTree::squared_limit(const RouletteReceiver& receiver, const Node& node,
+                                       double strength, double least) const {
   const BoxView view(receiver, node.centre, node.half_extent);
   const double square = std::max(view.nearest_square, least_square_);
   const double most = kBoundSlack * strength * static_cast<double>(node.peak);
   // No lobe is above 1: many nodes fail by their distance alone.
-  return least * square < most ? most * lobe_of(receiver, view, least_square_) / square : 0.0;
+  if (!(least * square < most)) return 0.0;
+  const double limit = most / square;
+  return limit * limit * squared_lobe_of(receiver, view, square);
 }
 
 double PerfectLightTree::strength_for(const RouletteReceiver& receiver, double count) const {

@@ -100,10 +100,10 @@ class PerfectLightTree {
 
   static Node node_of(const LightCluster& cluster, double scale);
   static Node joined(const Node& left, const Node& right);
-  /// Lights below whose numbers are not less than this are not accepted; 0 where none is whose
-  /// number is at least `least`.
-  double limit(const RouletteReceiver& receiver, const Node& node, double strength,
-               double least) const;
+  /// Lights below the squares of whose numbers are not less than this are not accepted; 0 where none
+  /// is whose number is at least `least`.
+  double squared_limit(const RouletteReceiver& receiver, const Node& node, double strength,
+                       double least) const;
   double leaf_bound(const RouletteReceiver& receiver, const Node& node) const;
 
   Array<Node> nodes_;       ///< the children of i are 2i + 1 and 2i + 2
@@ -130,15 +130,19 @@ void PerfectLightTree::play(const RouletteReceiver& receiver, double strength,
     const size_t number = (size_t{1} << task.level) - 1 + task.prefix;
     const Node& node = nodes_[number];
     if ((node.link_mask & receiver.link_mask) == 0) continue;
-    const double least = numbers.least(task.value, below);
-    const double most =
-        below == 0 ? strength * leaf_bound(receiver, node) : limit(receiver, node, strength, least);
-    if (!(least < most)) continue;
-    numbers.settle(task.value, below);
-    if (!(numbers.least(task.value, below) < most)) continue;
+    const double before = numbers.least(task.value, below);
     if (below == 0) {
+      const double most = strength * leaf_bound(receiver, node);
+      if (!(before < most)) continue;
+      numbers.settle(task.value, below);
+      if (!(numbers.least(task.value, below) < most)) continue;
       accept(AcceptedLeaf{leaves_[task.prefix], static_cast<float>(most < 1.0 ? most : 1.0)});
     } else {
+      const double most = squared_limit(receiver, node, strength, before);
+      if (!(before * before < most)) continue;
+      numbers.settle(task.value, below);
+      const double least = numbers.least(task.value, below);
+      if (!(least * least < most)) continue;
       typename Numbers::Value values[2];
       numbers.divide(task.value, number, below, values);
       stack[size++] = {2 * task.prefix + 1, task.level + 1, values[1]};
