@@ -9,6 +9,7 @@ import (
 	"strings"
 	"sync"
 	"testing"
+	"time"
 )
 
 var errOwn = errors.New("an error of the caller's own")
@@ -233,7 +234,11 @@ func TestUserGeometriesAreBoundedAndIntersected(t *testing.T) {
 	}
 	scene.Close()
 	runtime.GC()
-	<-isGone
+	select {
+	case <-isGone:
+	case <-time.After(20 * time.Second):
+		t.Error("the primitives are still held")
+	}
 	if !t.Failed() {
 		note("user geometry callback")
 	}

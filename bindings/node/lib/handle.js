@@ -10,6 +10,7 @@ const released = new FinalizationRegistry((release) => release());
 class Handle {
   constructor(object, release) {
     this.object = object;
+    this.isBusy = false;
     this.release = () => release(object);
     released.register(this, this.release, this);
   }
@@ -17,12 +18,19 @@ class Handle {
   /** The object for a call. */
   get address() {
     if (!this.object) throw new Error(`this ${this.constructor.name} is closed`);
+    this.requireIdle();
     return this.object;
+  }
+
+  /** Nothing may be done while another thread works on the object. */
+  requireIdle() {
+    if (this.isBusy) throw new Error(`this ${this.constructor.name} is being committed`);
   }
 
   /** Lets go of the object at once. Closing twice is allowed. */
   close() {
     if (!this.object) return;
+    this.requireIdle();
     this.object = null;
     released.unregister(this);
     this.release();

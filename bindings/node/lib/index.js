@@ -171,10 +171,10 @@ class Scene extends Geometries {
     this.check(native.kiwami_scene_set_parameter(this.address, parameter, value));
   }
 
-  /** Builds the acceleration structure on another thread; nothing else may use the scene until
-   * the promise is settled. */
+  /** Builds the acceleration structure on another thread; using the scene before the
+   * promise is settled is an error. */
   commit() {
-    return callAsync(native.kiwami_scene_commit, this.address);
+    return callAsync(native.kiwami_scene_commit, this);
   }
 
   /** The same on this thread. */
@@ -185,7 +185,7 @@ class Scene extends Geometries {
   /** As commit(), but keeps the tree where only vertices moved: quicker to make, and, the further
    * they moved, slower to trace. */
   refit() {
-    return callAsync(native.kiwami_scene_refit, this.address);
+    return callAsync(native.kiwami_scene_refit, this);
   }
 
   /** The same on this thread. */

@@ -59,11 +59,15 @@ function check(result, device = null) {
   throw new KiwamiError(result, sentence || native.kiwami_result_name(result));
 }
 
-/** Runs a function of the library on another thread; the promise fails as check() does. */
-function callAsync(call, ...values) {
+/** Runs a function of the library on another thread for its owner, which nothing else may use until
+ * then; the promise fails as check() does. */
+function callAsync(call, owner) {
+  const { address } = owner;
   ++runningCalls;
+  owner.isBusy = true;
   return new Promise((resolve, reject) => {
-    call.async(...values, (problem, result) => {
+    call.async(address, (problem, result) => {
+      owner.isBusy = false; // and the owner has lived until here
       const sentence = takeLogged((each) => each.result === result);
       if (--runningCalls === 0) logged = [];
       if (problem) reject(problem);

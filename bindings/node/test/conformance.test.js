@@ -214,7 +214,11 @@ test('a promise fails with the sentence of the library', async () => {
     assert.strictEqual(reason.message, sentence);
   }
   scenes[0].remove(0);
-  await scenes[0].commit();
+  const promise = scenes[0].commit();
+  assert.throws(() => scenes[0].close(), /being committed/);
+  assert.throws(() => scenes[0].closestHit(new Rays(1)), /being committed/);
+  await promise;
+  assert.strictEqual(scenes[0].closestHit(new Rays(1)).isHit(0), false);
 });
 
 test('geometries of wrong sizes are exceptions', () => {

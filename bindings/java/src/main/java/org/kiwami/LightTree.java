@@ -62,12 +62,19 @@ public final class LightTree implements AutoCloseable {
     KiwamiException.check(result, device);
   }
 
+  /** The same; what the call was given as addresses is reachable until here. */
+  private void check(int result, Object... given) {
+    Reference.reachabilityFence(given);
+    check(result);
+  }
+
   /** Adds lights; returns the number of the first. */
   public int addLights(Lights lights) {
     Memory first = new Memory(4);
     check(
         Native.kiwami_light_tree_add_lights(
-            object(), Scene.address(lights.buffer), 0, lights.count(), first));
+            object(), Scene.address(lights.buffer), 0, lights.count(), first),
+        lights);
     return first.getInt(0);
   }
 
@@ -91,17 +98,14 @@ public final class LightTree implements AutoCloseable {
         Native.LightMeshDesc.TRIANGLE_COUNT, Geometries.rows(triangles.length, 3, "triangles"));
     desc.setFloat(Native.LightMeshDesc.RADIANCE, radiance);
     Memory first = new Memory(4);
-    check(Native.kiwami_light_tree_add_mesh(object(), desc, first));
-    Reference.reachabilityFence(positions);
-    Reference.reachabilityFence(indices);
+    check(Native.kiwami_light_tree_add_mesh(object(), desc, first), positions, indices);
     return first.getInt(0);
   }
 
   /** Gives the lights from first on other powers. */
   public void setPowers(int first, float[] powers) {
     Memory values = Geometries.copy(powers);
-    check(Native.kiwami_light_tree_set_powers(object(), first, values, 0, powers.length));
-    Reference.reachabilityFence(values);
+    check(Native.kiwami_light_tree_set_powers(object(), first, values, 0, powers.length), values);
   }
 
   /** Builds the tree over all lights. */
@@ -120,7 +124,8 @@ public final class LightTree implements AutoCloseable {
     check(
         Native.kiwami_light_sample(
             object(), Scene.address(receivers.buffer), 0, Scene.address(choices.buffer), 0,
-            receivers.count(), null));
+            receivers.count(), null),
+        receivers);
     return choices;
   }
 
@@ -136,7 +141,9 @@ public final class LightTree implements AutoCloseable {
         Native.kiwami_light_pdf(
             object(), Scene.address(receivers.buffer), 0, Scene.address(choices.buffer),
             Native.LightChoice.STRUCT_BYTES, Scene.address(probabilities), 0, receivers.count(),
-            null));
+            null),
+        receivers,
+        choices);
     float[] answers = new float[receivers.count()];
     probabilities.asFloatBuffer().get(answers);
     return answers;

@@ -112,6 +112,12 @@ public final class Scene implements AutoCloseable {
     KiwamiException.check(result, device);
   }
 
+  /** The same; what the call was given as addresses is reachable until here. */
+  private void check(int result, Object... given) {
+    Reference.reachabilityFence(given);
+    check(result);
+  }
+
   /** A direct buffer is read where it lies; an empty one has an address too. */
   static Pointer address(Buffer buffer) {
     return buffer.capacity() == 0 ? new Memory(1) : com.sun.jna.Native.getDirectBufferPointer(buffer);
@@ -249,7 +255,9 @@ public final class Scene implements AutoCloseable {
     }
     check(
         Native.kiwami_closest_hit(
-            object(), address(rays.buffer), 0, address(hits.buffer), 0, rays.count(), null));
+            object(), address(rays.buffer), 0, address(hits.buffer), 0, rays.count(), null),
+        rays,
+        hits);
   }
 
   /** Whether each ray has a hit. */
@@ -257,7 +265,9 @@ public final class Scene implements AutoCloseable {
     ByteBuffer occluded = Rays.direct(rays.count());
     check(
         Native.kiwami_any_hit(
-            object(), address(rays.buffer), 0, address(occluded), 0, rays.count(), null));
+            object(), address(rays.buffer), 0, address(occluded), 0, rays.count(), null),
+        rays,
+        occluded);
     boolean[] answers = new boolean[rays.count()];
     for (int i = 0; i < answers.length; ++i) {
       answers[i] = occluded.get(i) != 0;
@@ -274,6 +284,7 @@ public final class Scene implements AutoCloseable {
           Native.kiwami_multi_hit(
               object(), address(rays.buffer), 0, rays.count(), maxHits, address(hits.buffer),
               hits.count(), offsets, null);
+      Reference.reachabilityFence(rays);
       if (result != Native.KIWAMI_ERROR_CAPACITY) {
         check(result);
         return new MultiHits(offsets.getLongArray(0, rays.count() + 1), hits);
@@ -287,7 +298,9 @@ public final class Scene implements AutoCloseable {
     ByteBuffer counts = Rays.direct(4L * rays.count());
     check(
         Native.kiwami_count_hits(
-            object(), address(rays.buffer), 0, address(counts), 0, rays.count(), null));
+            object(), address(rays.buffer), 0, address(counts), 0, rays.count(), null),
+        rays,
+        counts);
     int[] answers = new int[rays.count()];
     counts.asIntBuffer().get(answers);
     return answers;
