@@ -29,6 +29,32 @@ public enum FilterAnswer {
 /// <summary>Decides whether a hit counts. Several threads ask it at once.</summary>
 public delegate FilterAnswer Filter(FilterCandidate candidate);
 
+/// <summary>Which threads of the program are in the library. Its own threads become threads of the
+/// runtime with their first callback. When a program ends, Mono waits for all of these to end as well,
+/// which the library's never do: so it is ended first, as Environment.Exit would.</summary>
+internal static class CallingThread {
+  [ThreadStatic]
+  static int depth;
+  static int isEndWatched;
+
+  public static void Enter() {
+    ++depth;
+  }
+  public static void Leave() {
+    --depth;
+  }
+
+  /// <summary>The first thing that every callback does.</summary>
+  public static void BeginCallback() {
+    if (depth != 0 || Interlocked.Exchange(ref isEndWatched, 1) != 0) return;
+    if (Type.GetType("Mono.Runtime") == null) return;
+    AppDomain.CurrentDomain.ProcessExit += (sender, arguments) => Exit(Environment.ExitCode);
+  }
+
+  [DllImport("libc", EntryPoint = "exit", CallingConvention = CallingConvention.Cdecl)]
+  static extern void Exit(int code);
+}
+
 /// <summary>What a callback finds by its user pointer, for the length of one call.</summary>
 internal abstract class RunningCallback : IDisposable {
   GCHandle self;
@@ -68,6 +94,7 @@ internal sealed class RunningFilter : RunningCallback {
     var running = (RunningFilter)GCHandle.FromIntPtr(user).Target;
     if (running.Thrown != null) return -1;
     try {
+      CallingThread.BeginCallback();
       var asked = (kiwami_filter_candidate*)address;
       var path = asked->depth == 0 ? noInstances : new uint[asked->depth];
       for (int i = 0; i < path.Length; ++i) path[i] = asked->instance_path[i];
@@ -95,6 +122,7 @@ internal sealed class RunningProgress : RunningCallback {
     var running = (RunningProgress)GCHandle.FromIntPtr(user).Target;
     if (running.Thrown != null) return 1;
     try {
+      CallingThread.BeginCallback();
       return running.progress(fraction) ? 1 : 0;
     } catch (Exception exception) {
       running.Keep(exception);

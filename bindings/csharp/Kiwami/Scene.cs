@@ -92,12 +92,14 @@ public sealed partial class Scene : SafeHandle {
   /// <summary>The scene's address for the length of one call. Disposed scenes are an error.</summary>
   int Call(Func<IntPtr, int> call) {
     bool isHeld = false;
+    CallingThread.Enter();
     try {
       DangerousAddRef(ref isHeld);
       int result = call(handle);
       if (result != Native.KIWAMI_ERROR_CAPACITY) Check(result);
       return result;
     } finally {
+      CallingThread.Leave();
       if (isHeld) DangerousRelease();
     }
   }

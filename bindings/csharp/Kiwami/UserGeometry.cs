@@ -105,6 +105,7 @@ internal static class UserCallbacks {
 
   static unsafe int Bounds(IntPtr user, uint first, uint count, IntPtr target) {
     try {
+      CallingThread.BeginCallback();
       var boxes = new Box[count];
       ((IUserGeometry)GCHandle.FromIntPtr(user).Target).Bounds(first, boxes);
       for (int i = 0; i < boxes.Length; ++i) ((Box*)target)[i] = boxes[i];
@@ -118,6 +119,7 @@ internal static class UserCallbacks {
   static int Intersect(IntPtr user, IntPtr asked) {
     Intersection intersection = null;
     try {
+      CallingThread.BeginCallback();
       intersection = new Intersection(asked);
       ((IUserGeometry)GCHandle.FromIntPtr(user).Target).Intersect(intersection);
       return 0;
