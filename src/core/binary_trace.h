@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bvh/binary_layout.h"
 #include "kernels/kernel_table.h"
+#include "wide/binary_layout.h"
 
 namespace kiwami {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bvh/binary_tree.h"
 #include "core/bvh.h"
 #include "kernels/kernel_table.h"
 #include "kiwami/binary_tree.h"
+#include "wide/binary_layouts.h"
 
 namespace kiwami {
 

@@ -6,10 +6,10 @@
 // meets them, each with its margin (see ray-inl.h), and every tree finds the same hits.
 #pragma once
 
-#include "bvh/binary_layout.h"
 #include "kernels/answers-inl.h"
 #include "kernels/probe-inl.h"
 #include "kernels/query-inl.h"
+#include "wide/binary_layout.h"
 
 namespace kiwami {
 namespace KIWAMI_ISA {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "bvh/binary_tree.h"
 #include "core/error.h"
+#include "wide/binary_layouts.h"
 
 namespace kiwami_tests {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "bvh/binary_tree.h"
 #include "core/error.h"
+#include "wide/binary_layouts.h"
 
 namespace kiwami {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "bvh/binary_tree.h"
 #include "core/error.h"
 #include "math/rounding.h"
+#include "wide/binary_layouts.h"
 
 namespace kiwami {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bvh/binary_layout.h"
 #include "core/memory.h"
 #include "kiwami/bvh.h"
 #include "math/bounds.h"
+#include "wide/binary_layout.h"
 
 namespace kiwami {
 
