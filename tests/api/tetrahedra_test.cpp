@@ -157,7 +157,7 @@ TEST(Tetrahedra, AreThoseThatContainThePoints) {
                           Case{1 << 21, 200000, 0x1p-145f}}) {
     TetrahedralGrid grid = kuhn_grid(6, each.cell_size, each.jitter, random);
     shuffle(grid.tetrahedra, random);
-    std::vector<Vertex> points(ray_budget(700));
+    std::vector<Vertex> points(std::max<uint64_t>(200, ray_budget(700)));
     for (Vertex& point : points) point = random_point(grid, random);
     std::vector<Expected> expected;
     size_t found = 0;

@@ -31,7 +31,7 @@ TEST(RouletteNumbers, DitheredOnesAreUniformOverSeedsAndSamples) {
       square += (count - draws / 16.0) * (count - draws / 16.0) * 16.0 / draws;
     }
     EXPECT_LT(square, 60.0) << "dimension " << dimension << ", 15 degrees of freedom";
-    EXPECT_NEAR(last_bits, draws / 2, 2.5 * std::sqrt(draws));
+    EXPECT_NEAR(last_bits, draws / 2.0, 2.5 * std::sqrt(draws));
   }
 }
 
@@ -70,7 +70,7 @@ TEST(RouletteNumbers, DitheredSamplesOfAPixelAreSpread) {
 struct DitheredPicture {
   static constexpr uint32_t kEdge = 64;
 
-  explicit DitheredPicture(uint32_t method) : method_(method) {
+  explicit DitheredPicture(uint32_t chosen) : method(chosen) {
     Random random(seed(), 659);
     // Enough lights that some number is decided at each pixel, all above the plane.
     for (int i = 0; i < 24; ++i) {
@@ -80,45 +80,46 @@ struct DitheredPicture {
       light.points[2] = 1.0f + random.unit();
       light.power = 1.0f + random.unit();
       light.link_mask = ~uint64_t{0};
-      scene_.lights.push_back(light);
+      scene.lights.push_back(light);
     }
-    tree_ = make_light_tree(device_.get(), scene_, 8);
-    lights_ = scene_.seen();
+    tree = make_light_tree(device.get(), scene, 8);
+    lights = scene.seen();
     for (uint32_t i = 0; i < kEdge * kEdge; ++i) {
       kiwami_light_receiver receiver{};
-      receiver.position[0] = static_cast<float>(i % kEdge) / kEdge - 0.5f;
-      receiver.position[1] = static_cast<float>(i / kEdge) / kEdge - 0.5f;
+      const uint32_t x = i % kEdge, y = i / kEdge;
+      receiver.position[0] = static_cast<float>(x) / kEdge - 0.5f;
+      receiver.position[1] = static_cast<float>(y) / kEdge - 0.5f;
       receiver.normal[2] = 1.0f;
       receiver.link_mask = ~uint64_t{0};
       receiver.random = (random.bits() + 0.5) * 0x1p-32;
-      receivers_.push_back(receiver);
-      pixels_.push_back({i % kEdge, i / kEdge, 0});
+      receivers.push_back(receiver);
+      pixels.push_back({x, y, 0});
     }
   }
 
   std::vector<kiwami_light_choice> choices(uint32_t sequence, uint32_t picture_seed) const {
     kiwami_light_query query;
     check(kiwami_light_query_init(&query, sizeof query));
-    query.method = method_;
+    query.method = method;
     query.max_choices = 32;
     query.sequence = sequence;
     query.sequence_seed = picture_seed;
-    query.pixels = pixels_.data();
-    std::vector<kiwami_light_choice> choices(32 * receivers_.size());
-    check(kiwami_light_sample(tree_.get(), receivers_.data(), 0, choices.data(), 0,
-                              receivers_.size(), &query));
+    query.pixels = pixels.data();
+    std::vector<kiwami_light_choice> choices(32 * receivers.size());
+    check(kiwami_light_sample(tree.get(), receivers.data(), 0, choices.data(), 0, receivers.size(),
+                              &query));
     return choices;
   }
 
   /// The error of each pixel, relative to what is right.
   std::vector<double> errors(uint32_t sequence, uint32_t picture_seed) const {
     const std::vector<kiwami_light_choice> all = choices(sequence, picture_seed);
-    std::vector<double> errors(receivers_.size());
-    for (size_t i = 0; i < receivers_.size(); ++i) {
+    std::vector<double> errors(receivers.size());
+    for (size_t i = 0; i < receivers.size(); ++i) {
       double expected = 0.0, estimate = 0.0;
-      for (const SeenLight& light : lights_) expected += contribution(light, receivers_[i]);
+      for (const SeenLight& light : lights) expected += contribution(light, receivers[i]);
       for (size_t k = 32 * i; all[k].light_id != KIWAMI_INVALID_ID; ++k) {
-        estimate += contribution(lights_[all[k].light_id], receivers_[i]) /
+        estimate += contribution(lights[all[k].light_id], receivers[i]) /
                     static_cast<double>(all[k].probability);
       }
       errors[i] = estimate / expected - 1.0;
@@ -126,13 +127,13 @@ struct DitheredPicture {
     return errors;
   }
 
-  uint32_t method_;
-  DeviceHandle device_ = make_device(KIWAMI_ISA_AUTO, 1);
-  LightScene scene_;
-  LightTreeHandle tree_;
-  std::vector<SeenLight> lights_;
-  std::vector<kiwami_light_receiver> receivers_;
-  std::vector<kiwami_light_pixel> pixels_;
+  uint32_t method;
+  DeviceHandle device = make_device(KIWAMI_ISA_AUTO, 1);
+  LightScene scene;
+  LightTreeHandle tree;
+  std::vector<SeenLight> lights;
+  std::vector<kiwami_light_receiver> receivers;
+  std::vector<kiwami_light_pixel> pixels;
 };
 
 /// The mean square after a filter that averages squares of `size` pixels.
@@ -148,7 +149,8 @@ double filtered_square(const std::vector<double>& errors, uint32_t size) {
       sum += mean * mean;
     }
   }
-  return sum / ((kEdge / size) * (kEdge / size));
+  const uint32_t squares = kEdge / size;
+  return sum / (squares * squares);
 }
 
 class DitheredRoulette : public testing::TestWithParam<uint32_t> {};
@@ -183,15 +185,16 @@ TEST_P(DitheredRoulette, IsAFunctionOfPixelAndSeed) {
   };
   const auto ids = [](const std::vector<kiwami_light_choice>& choices) {
     std::vector<uint32_t> all;
+    all.reserve(choices.size());
     for (const kiwami_light_choice& choice : choices) all.push_back(choice.light_id);
     return all;
   };
   const std::vector<uint32_t> first = ids(dithered(1));
   EXPECT_NE(first, ids(dithered(2)));
   // Whatever the random numbers are.
-  for (kiwami_light_receiver& receiver : picture.receivers_) receiver.random *= 0.7;
+  for (kiwami_light_receiver& receiver : picture.receivers) receiver.random *= 0.7;
   EXPECT_EQ(first, ids(dithered(1)));
-  for (kiwami_light_pixel& pixel : picture.pixels_) ++pixel.sample;
+  for (kiwami_light_pixel& pixel : picture.pixels) ++pixel.sample;
   EXPECT_NE(first, ids(dithered(1)));
   kiwami_light_query query;
   check(kiwami_light_query_init(&query, sizeof query));
@@ -200,11 +203,11 @@ TEST_P(DitheredRoulette, IsAFunctionOfPixelAndSeed) {
   query.sequence = KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE;
   kiwami_light_choice choices[4];
   EXPECT_EQ(
-      kiwami_light_sample(picture.tree_.get(), picture.receivers_.data(), 0, choices, 0, 1, &query),
+      kiwami_light_sample(picture.tree.get(), picture.receivers.data(), 0, choices, 0, 1, &query),
       KIWAMI_ERROR_INVALID_ARGUMENT);
   query.sequence = 2;
   EXPECT_EQ(
-      kiwami_light_sample(picture.tree_.get(), picture.receivers_.data(), 0, choices, 0, 1, &query),
+      kiwami_light_sample(picture.tree.get(), picture.receivers.data(), 0, choices, 0, 1, &query),
       KIWAMI_ERROR_INVALID_ARGUMENT);
 }
 

@@ -242,10 +242,10 @@ std::vector<Vec3> row_points(uint32_t cells, uint64_t count) {
   const float step = 1.028f * static_cast<float>(cells) / static_cast<float>(edge);
   const float first = -0.0141f * static_cast<float>(cells);
   std::vector<Vec3> points;
+  const auto place = [&](uint32_t number) { return first + step * static_cast<float>(number); };
+  points.reserve(size_t{edge} * edge * edge);
   for (uint32_t i = 0; i < edge * edge * edge; ++i) {
-    points.push_back({first + step * static_cast<float>(i % edge),
-                      first + step * static_cast<float>(i / edge % edge),
-                      first + step * static_cast<float>(i / edge / edge)});
+    points.push_back({place(i % edge), place(i / edge % edge), place(i / edge / edge)});
   }
   return points;
 }
