@@ -25,35 +25,31 @@ double time_of(const TimeSteps& steps, double segment) {
   return steps.begin + (double{steps.end} - steps.begin) * (segment / steps.segment_count);
 }
 
-/// Adds where the triangle is at a place among its mesh's steps, 0 to segment_count.
-void extend_at(Bounds& box, const MovingMeshView& mesh, uint32_t primitive, double place) {
+/// The box of a triangle at a place among its mesh's steps, 0 to segment_count, wider by a margin.
+Bounds box_at(const MovingMeshView& mesh, uint32_t primitive, double place, double margin) {
   const auto step = std::min(static_cast<uint32_t>(place), mesh.time.segment_count - 1);
-  const double fraction = place - step;
+  const double of_end = place - step, of_start = 1.0 - of_end;
   Vec3f a[3], b[3];
   corners_at(mesh, primitive, step, a);
   corners_at(mesh, primitive, step + 1, b);
-  for (int k = 0; k < 3; ++k) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double at = (1.0 - fraction) * a[k][axis] + fraction * b[k][axis];
-      box.lower[axis] = min_keep(box.lower[axis], round_down(at));
-      box.upper[axis] = max_keep(box.upper[axis], round_up(at));
-    }
+  Bounds box;
+  for (int axis = 0; axis < 3; ++axis) {
+    double at[3];
+    for (int k = 0; k < 3; ++k) at[k] = of_start * a[k][axis] + of_end * b[k][axis];
+    box.lower[axis] = round_down(std::min(std::min(at[0], at[1]), at[2]) - margin);
+    box.upper[axis] = round_up(std::max(std::max(at[0], at[1]), at[2]) + margin);
   }
+  return box;
 }
 
-/// During a part of an own segment of the mesh, with room for the rounding of its ends.
-LinearBounds divided_bounds(const MovingMeshView& mesh, uint32_t primitive, uint32_t segment,
-                            uint32_t division) {
-  LinearBounds bounds;
-  extend_at(bounds.start, mesh, primitive, static_cast<double>(segment) / division);
-  extend_at(bounds.end, mesh, primitive, (static_cast<double>(segment) + 1.0) / division);
-  // At an end the mesh may already be, or still, in the own segment beside.
-  const uint32_t own = segment / division, first = own == 0 ? 0 : own - 1;
-  const uint32_t last = std::min(own + 2, mesh.time.segment_count);
+/// The farthest that a corner goes along an axis between two steps around a segment.
+double greatest_way(const MovingMeshView& mesh, uint32_t primitive, uint32_t segment) {
+  const uint32_t last = std::min(segment + 2, mesh.time.segment_count);
+  uint32_t step = segment == 0 ? 0 : segment - 1;
   Vec3f before[3], after[3];
-  corners_at(mesh, primitive, first, before);
+  corners_at(mesh, primitive, step, before);
   double farthest = 0.0;
-  for (uint32_t step = first + 1; step <= last; ++step) {
+  while (step++ != last) {
     corners_at(mesh, primitive, step, after);
     for (int k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -62,14 +58,18 @@ LinearBounds divided_bounds(const MovingMeshView& mesh, uint32_t primitive, uint
       before[k] = after[k];
     }
   }
-  const double slack = place_rounding(mesh.time) * farthest;
-  for (Bounds* box : {&bounds.start, &bounds.end}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box->lower[axis] = round_down(box->lower[axis] - slack);
-      box->upper[axis] = round_up(box->upper[axis] + slack);
-    }
-  }
-  return bounds;
+  return farthest;
+}
+
+/// During a part of an own segment of the mesh, with room for the rounding of its ends: there the
+/// mesh may already be, or still, in the own segment beside.
+LinearBounds divided_bounds(const MovingMeshView& mesh, uint32_t primitive, uint32_t segment,
+                            uint32_t division) {
+  const double margin =
+      place_rounding(mesh.time) * greatest_way(mesh, primitive, segment / division);
+  const double place = segment;
+  return {box_at(mesh, primitive, place / division, margin),
+          box_at(mesh, primitive, (place + 1.0) / division, margin)};
 }
 
 /// Where the triangle is at any time of a segment of other steps.
@@ -78,8 +78,8 @@ Bounds swept_box(const MovingMeshView& mesh, uint32_t primitive, const TimeSteps
   Bounds box = Bounds::empty();
   PlaceRange range;
   if (!places_during(mesh.time, steps, segment, range)) return box;
-  extend_at(box, mesh, primitive, range.first);
-  extend_at(box, mesh, primitive, range.last);
+  box.extend(box_at(mesh, primitive, range.first, 0.0));
+  box.extend(box_at(mesh, primitive, range.last, 0.0));
   for (double key = std::ceil(range.first); key <= range.last; key += 1.0) {
     box.extend(box_at(mesh, primitive, static_cast<uint32_t>(key)));
   }

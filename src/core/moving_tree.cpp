@@ -14,10 +14,14 @@ namespace {
 /// Bounds of a slot that nothing is in during a segment: they stay finite at any time between.
 constexpr float kUnused = 0x1p100f;
 constexpr uint32_t kMaxSegments = KIWAMI_MAX_TIME_STEPS - 1;
-/// Short segments are not divided: little would be gained, and each try takes time.
-constexpr uint32_t kMaxDividedSegments = 16;
-/// Segments are divided where the boxes get smaller than this part of what they were.
-constexpr double kWorthwhile = 0.9;
+/// Segments are divided into so many at most, and short ones not at all: little would be gained
+/// beyond, and each division takes as much time as all before.
+constexpr uint32_t kMaxDivision = 4, kMaxDividedSegments = 16;
+/// Segments are divided where the boxes get smaller than this part of what they were, on average
+/// over time; where they may, those in the middle get smaller by twice as much.
+constexpr double kWorthwhile = 0.9, kPromising = 0.85;
+/// Segments that are looked at for that.
+constexpr uint32_t kSampledSegments = 4;
 
 /// A box at a part of the way through its segment; empty for an unused slot.
 template <int N>
@@ -94,6 +98,47 @@ class BoundsFiller {
   const TimeSteps& steps_;
   uint32_t segment_;
   MotionBounds<N>* bounds_;
+};
+
+/// Walks a tree from its leaves up in the middle of a segment, and adds the areas of its boxes there:
+/// as they are, and as they would be if the segment were divided.
+template <int N>
+class MiddleAreas {
+ public:
+  MiddleAreas(const WideTree& tree, const MovingSource& source, const TimeSteps& steps,
+              uint32_t segment, const MotionBounds<N>* bounds)
+      : tree_(tree),
+        source_(source),
+        time_(static_cast<float>(steps.begin + (double{steps.end} - steps.begin) *
+                                                   ((segment + 0.5) / steps.segment_count))),
+        bounds_(bounds) {}
+
+  Bounds add_slot(ChildReference node, uint32_t slot, ChildReference child) {
+    const Bounds below = add(child);
+    if (below.is_empty()) return below;
+    divided += double{below.half_area()};
+    undivided += double{box_at<N>(bounds_[tree_.number_of(node)], slot, 0.5f).half_area()};
+    return below;
+  }
+
+  double undivided = 0.0, divided = 0.0;
+
+ private:
+  Bounds add(ChildReference reference) {
+    Bounds below = Bounds::empty();
+    for (uint32_t i = 0; i < N; ++i) {
+      if (((reference.mask() >> i) & 1u) == 0) continue;
+      const uint64_t number = tree_.number_of(reference);
+      below.extend(reference.is_leaf() ? source_.at(tree_.leaf_ids(number)[i], time_)
+                                       : add_slot(reference, i, tree_.nodes<N>()[number].child[i]));
+    }
+    return below;
+  }
+
+  const WideTree& tree_;
+  const MovingSource& source_;
+  float time_;
+  const MotionBounds<N>* bounds_;
 };
 
 /// Walks a tree from its leaves up, at one time.
@@ -180,19 +225,46 @@ void MovingTree::build(Array<BuildPrimitive> boxes, const Bounds& extent, const 
 template <int N>
 void MovingTree::bound(const MovingSource& source, Memory& memory, const Parallel& parallel) {
   fill<N>(source, memory, parallel);
-  double area = mean_area<N>(memory, parallel);
-  while (area > 0.0 && 2 * time_.segment_count <= kMaxDividedSegments) {
+  const uint32_t most = std::min(kMaxDivision * time_.segment_count, kMaxDividedSegments);
+  while (2 * time_.segment_count <= most && is_promising<N>(source, memory, parallel)) {
+    const double area = mean_area<N>(memory, parallel);
     Array<unsigned char> before = std::move(bounds_);
     time_.segment_count *= 2;
     fill<N>(source, memory, parallel);
-    const double divided = mean_area<N>(memory, parallel);
-    if (divided > kWorthwhile * area) {
-      bounds_ = std::move(before);
-      time_.segment_count /= 2;
-      return;
-    }
-    area = divided;
+    if (mean_area<N>(memory, parallel) <= kWorthwhile * area) continue;
+    bounds_ = std::move(before);
+    time_.segment_count /= 2;
+    return;
   }
+}
+
+/// Whether divided segments may be worthwhile, which costs less to find out than to divide them.
+template <int N>
+bool MovingTree::is_promising(const MovingSource& source, Memory& memory,
+                              const Parallel& parallel) const {
+  const WideTree& tree = tree_.tree;
+  const ChildReference root = tree.view.root;
+  if (root.mask() == 0 || root.is_leaf()) return false;
+  struct Areas {
+    double undivided, divided;
+  };
+  const uint32_t samples = std::min(kSampledSegments, time_.segment_count);
+  Array<Areas> areas(memory, size_t{N} * samples);
+  const auto* const bounds = reinterpret_cast<const MotionBounds<N>*>(bounds_.data());
+  const WideNode<N>& node = tree.nodes<N>()[tree.number_of(root)];
+  parallel.for_each(areas.size(), [&](size_t task) {
+    const auto slot = static_cast<uint32_t>(task % N);
+    const uint32_t segment = static_cast<uint32_t>(task / N) * time_.segment_count / samples;
+    MiddleAreas<N> sum(tree, source, time_, segment, bounds + segment * tree.node_count);
+    if (((root.mask() >> slot) & 1u) != 0) sum.add_slot(root, slot, node.child[slot]);
+    areas[task] = {sum.undivided, sum.divided};
+  });
+  Areas all{0.0, 0.0};
+  for (const Areas& some : areas) {
+    all.undivided += some.undivided;
+    all.divided += some.divided;
+  }
+  return all.divided < kPromising * all.undivided;
 }
 
 /// The sum of the areas of all boxes, on average over time.

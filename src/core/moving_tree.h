@@ -18,7 +18,7 @@ class MovingSource {
   /// During a segment of some steps: boxes that move linearly around the primitive, with room
   /// for the rounding of what is interpolated. Empty where it does not exist then.
   virtual LinearBounds during(uint32_t id, const TimeSteps& steps, uint32_t segment) const = 0;
-  /// At a time; empty where it does not exist then. For checks.
+  /// At a time; empty where it does not exist then.
   virtual Bounds at(uint32_t id, float time) const = 0;
 
  protected:
@@ -55,6 +55,8 @@ class MovingTree {
   void bound(const MovingSource& source, Memory& memory, const Parallel& parallel);
   template <int N>
   void fill(const MovingSource& source, Memory& memory, const Parallel& parallel);
+  template <int N>
+  bool is_promising(const MovingSource& source, Memory& memory, const Parallel& parallel) const;
   template <int N>
   double mean_area(Memory& memory, const Parallel& parallel) const;
   template <int N>
