@@ -121,7 +121,7 @@ func (s *Scene) trace(options []Option, body func(query *C.kiwami_query) C.kiwam
 		each(&chosen)
 	}
 	if chosen.filter == nil {
-		return s.callWithUserGeometry(func() C.kiwami_result { return body(nil) })
+		return s.callWithCallbacks(&firstError{}, func() C.kiwami_result { return body(nil) })
 	}
 	running := &runningFilter{function: chosen.filter}
 	handle := cgo.NewHandle(running)
@@ -130,22 +130,21 @@ func (s *Scene) trace(options []Option, body func(query *C.kiwami_query) C.kiwam
 	defer memory.free()
 	query := (*C.kiwami_query)(memory.copy(nil, C.sizeof_kiwami_query))
 	C.kiwami_go_query_init(query, C.uintptr_t(handle))
-	err := s.callWithUserGeometry(func() C.kiwami_result { return body(query) })
-	return withCause(err, running.failed.err)
+	return s.callWithCallbacks(&running.failed, func() C.kiwami_result { return body(query) })
 }
 
 type runningProgress struct {
 	function func(fraction float64) error
-	err      error
+	failed   firstError
 }
 
 //export kiwamiGoProgress
 func kiwamiGoProgress(handle C.uintptr_t, fraction C.double) C.int32_t {
 	running := cgo.Handle(handle).Value().(*runningProgress)
-	if running.err == nil {
-		running.err = guarded(func() error { return running.function(float64(fraction)) })
+	if running.failed.err == nil {
+		running.failed.err = guarded(func() error { return running.function(float64(fraction)) })
 	}
-	if running.err != nil {
+	if running.failed.err != nil {
 		return 1
 	}
 	return 0
@@ -158,10 +157,9 @@ func (s *Scene) CommitWithProgress(progress func(fraction float64) error) error 
 	running := &runningProgress{function: progress}
 	handle := cgo.NewHandle(running)
 	defer handle.Delete()
-	err := s.callWithUserGeometry(func() C.kiwami_result {
+	return s.callWithCallbacks(&running.failed, func() C.kiwami_result {
 		C.kiwami_go_set_progress(s.object, C.uintptr_t(handle))
 		defer C.kiwami_go_set_progress(s.object, 0)
 		return C.kiwami_scene_commit(s.object)
 	})
-	return withCause(err, running.err)
 }

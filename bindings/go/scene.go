@@ -86,13 +86,13 @@ func (s *Scene) SetParameter(parameter uint32, value float64) error {
 
 // Commit builds the acceleration structure of what the scene holds now.
 func (s *Scene) Commit() error {
-	return s.callWithUserGeometry(func() C.kiwami_result { return C.kiwami_scene_commit(s.object) })
+	return s.callWithCallbacks(&firstError{}, func() C.kiwami_result { return C.kiwami_scene_commit(s.object) })
 }
 
 // Refit is Commit, but keeps the tree where only vertices moved: quicker to make, and, the further
 // they moved, slower to trace.
 func (s *Scene) Refit() error {
-	return s.callWithUserGeometry(func() C.kiwami_result { return C.kiwami_scene_refit(s.object) })
+	return s.callWithCallbacks(&firstError{}, func() C.kiwami_result { return C.kiwami_scene_refit(s.object) })
 }
 
 // ClosestHit finds the closest hit of each ray.

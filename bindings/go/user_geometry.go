@@ -170,12 +170,20 @@ func (e *errorsOfCalls) end(begin uint64) (first error) {
 	return first
 }
 
-// callWithUserGeometry is call, for what may run callbacks of user geometries.
-func (s *Scene) callWithUserGeometry(body func() C.kiwami_result) error {
+// callWithCallbacks is call, for what may run callbacks: those of user geometries, and others of its
+// own, whose first error goes first.
+func (s *Scene) callWithCallbacks(own *firstError, body func() C.kiwami_result) error {
 	if atomic.LoadInt64(&userErrors.geometries) == 0 {
-		return s.call(body)
+		return withCause(s.call(body), own.err)
 	}
 	begin := userErrors.begin()
 	err := s.call(body)
-	return withCause(err, userErrors.end(begin))
+	cause := userErrors.end(begin)
+	failed, isOwn := err.(*Error)
+	if own.err != nil {
+		cause = own.err
+	} else if !isOwn || failed.Result != C.KIWAMI_ERROR_CALLBACK {
+		cause = nil // the error has another reason
+	}
+	return withCause(err, cause)
 }

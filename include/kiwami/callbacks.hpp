@@ -121,12 +121,15 @@ class UserExceptions {
   std::vector<Kept> kept_;
 };
 
-/// Runs a call that may run callbacks of user geometries, and throws what they have thrown.
+/// Runs a call that may run callbacks of user geometries, and throws what they have thrown; own is
+/// what other callbacks of the call have, or null.
 template <typename Body>
-kiwami_result run_call(Body&& body) {
+kiwami_result run_call(Body&& body, const FirstException* own = nullptr) {
   const UserExceptions::Call call(UserExceptions::of_process());
   const kiwami_result result = body();
-  if (result != KIWAMI_OK) call.rethrow();
+  if (own) own->rethrow();
+  // Other results have other reasons.
+  if (result == KIWAMI_ERROR_CALLBACK) call.rethrow();
   return result;
 }
 
@@ -173,9 +176,7 @@ class Query {
     kiwami_query query = query_ ? *query_ : detail::defaults(kiwami_query_init);
     query.filter = function_;
     query.filter_user = &running;
-    const kiwami_result result = detail::run_call([&] { return body(&query); });
-    running.exception.rethrow();
-    return result;
+    return detail::run_call([&] { return body(&query); }, &running.exception);
   }
 
  private:

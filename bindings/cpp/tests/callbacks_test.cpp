@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
-#include <optional>
+#include <string>
 #include <thread>
 
 #include "support.h"
@@ -218,6 +218,28 @@ TEST(Callbacks, EachOfManyCallsThrowsItsOwn) {
     }
   }
   for (std::size_t i = 0; i < stopped.size(); ++i) EXPECT_EQ(stopped[i], i % 2 == 0 ? 200 : 0);
+}
+
+TEST(Callbacks, CallsThatFailForAnotherReasonSaySo) {
+  const kiwami::Device device;
+  Squares squares(nullptr);
+  squares.throws_at = 0.5f;
+  kiwami::Scene throwing(device);
+  throwing.attach(kiwami::UserGeometry(device, 40, squares));
+  throwing.commit();
+  std::atomic<bool> is_over{false};
+  std::atomic<int> thrown{0};
+  std::jthread other([&] {
+    for (; !is_over; ++thrown) EXPECT_THROW(throwing.any_hit(ray_at(0.5f, 0)), Stop);
+  });
+  while (thrown == 0) std::this_thread::yield();
+  kiwami::Scene scene = layers(device);
+  const auto fail = [](const kiwami::FilterCandidate&) -> bool { throw std::string("own"); };
+  for (int round = 0; round < 2000; ++round) {
+    EXPECT_THROW(scene.any_hit(ray_at(0, 0), fail), std::string);
+    EXPECT_THROW(scene.commit([](double) { return true; }), kiwami::Error);
+  }
+  is_over = true;
 }
 
 }  // namespace

@@ -60,20 +60,25 @@ public sealed partial class Scene : SafeHandle {
     KiwamiException.Check(result, device);
   }
 
-  /// <summary>As Call, for what may run callbacks of user geometries.</summary>
-  int Run(Func<IntPtr, int> call) {
+  /// <summary>As Call, for what may run callbacks: those of user geometries, and others of its own
+  /// (or null), whose exception goes first.</summary>
+  int Run(RunningCallback own, Func<IntPtr, int> call) {
     using (var running = UserErrors.Begin()) {
       try {
         return Call(call);
-      } catch (KiwamiException error) when (running.First != null) {
-        throw error.With(running.First);
+      } catch (KiwamiException error) {
+        Exception cause = own == null ? null : own.Thrown;
+        // Other results have other reasons than user geometries.
+        if (cause == null && error.Result == Native.KIWAMI_ERROR_CALLBACK) cause = running.First;
+        if (cause == null) throw;
+        throw error.With(cause);
       }
     }
   }
 
   /// <summary>A trace call, with the address of its query, which may be 0.</summary>
   int Trace(Filter filter, Func<IntPtr, IntPtr, int> call) {
-    if (filter == null) return Run(scene => call(scene, IntPtr.Zero));
+    if (filter == null) return Run(null, scene => call(scene, IntPtr.Zero));
     using (var running = new RunningFilter(filter))
     using (var query = new Pin(new kiwami_query[1])) {
       Native.kiwami_query_init(query.Address, (UIntPtr)kiwami_query.Size);
@@ -81,11 +86,7 @@ public sealed partial class Scene : SafeHandle {
       fields.filter = RunningFilter.Function;
       fields.filter_user = running.User;
       Marshal.StructureToPtr(fields, query.Address, false);
-      try {
-        return Run(scene => call(scene, query.Address));
-      } catch (KiwamiException error) when (running.Thrown != null) {
-        throw error.With(running.Thrown);
-      }
+      return Run(running, scene => call(scene, query.Address));
     }
   }
 
@@ -125,20 +126,16 @@ public sealed partial class Scene : SafeHandle {
 
   void Build(Func<IntPtr, int> build, Func<double, bool> progress) {
     if (progress == null) {
-      Run(build);
+      Run(null, build);
       return;
     }
     using (var running = new RunningProgress(progress)) {
-      try {
-        Run(scene => {
-          Native.kiwami_scene_set_progress(scene, RunningProgress.Function, running.User);
-          int result = build(scene);
-          Native.kiwami_scene_set_progress(scene, IntPtr.Zero, IntPtr.Zero);
-          return result;
-        });
-      } catch (KiwamiException error) when (running.Thrown != null) {
-        throw error.With(running.Thrown);
-      }
+      Run(running, scene => {
+        Native.kiwami_scene_set_progress(scene, RunningProgress.Function, running.User);
+        int result = build(scene);
+        Native.kiwami_scene_set_progress(scene, IntPtr.Zero, IntPtr.Zero);
+        return result;
+      });
     }
   }
 

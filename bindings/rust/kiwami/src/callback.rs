@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //! What panics in functions that the library calls back. A panic may not cross C: its message is
 //! kept, and becomes an error of the call.
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use kiwami_sys as sys;
 use std::any::Any;
 use std::panic::{catch_unwind, AssertUnwindSafe};
@@ -85,6 +85,9 @@ pub(crate) fn run(call: impl FnOnce() -> Result<(), Error>) -> Result<(), Error>
     }
     let running = Running::new();
     call().map_err(|error| {
+        if error.kind() != ErrorKind::Callback {
+            return error; // it has another reason
+        }
         let panics = panics();
         let kept = panics.kept.iter().find(|(when, _)| *when > running.begin);
         kept.map_or(error, |(_, message)| error_of("user geometry", message))
