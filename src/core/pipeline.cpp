@@ -409,8 +409,7 @@ BinaryBvh build_by_trial(Array<BuildPrimitive> primitives, const TriangleSource&
   BinaryBvh top_down = build_by(std::move(primitives), source, parameters, width, memory, parallel);
   if (top_down.nodes.empty()) return top_down;
   WideTreeConfig config = wide_tree_config(parameters, width);
-  // Without a triangle no ray has met anything: only areas count.
-  if (source.mesh_count != 0) config.rays = rays;
+  config.rays = rays;
   const double of_top_down = cost_to_rays(top_down, source, config, memory, parallel);
   const double of_bottom_up = cost_to_rays(bottom_up, source, config, memory, parallel);
   return of_bottom_up < of_top_down ? std::move(bottom_up) : std::move(top_down);

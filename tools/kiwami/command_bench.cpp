@@ -28,17 +28,6 @@ constexpr uint32_t kMostThreads = 1024;
 constexpr char kAllRays[] = "primary,bounce,bounce_shuffled,ao,shadow,random";
 constexpr char kPipelineRays[] = "bounce_shuffled,ao";
 
-std::vector<std::string> parse_rays(const std::string& text) {
-  const std::vector<std::string>& known = bench_ray_names();
-  std::vector<std::string> rays = split_different_words("--rays", text);
-  for (const std::string& name : rays) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw UsageError("--rays has '" + name + "', expected some of " + joined_words(known));
-    }
-  }
-  return rays;
-}
-
 std::vector<uint32_t> parse_threads(const std::string& text) {
   std::vector<uint32_t> threads;
   for (const std::string& word : split_different_words("--threads", text)) {
@@ -73,7 +62,8 @@ EmbreeQuality parse_embree_quality(const std::string& text) {
 BenchSettings make_settings(const BenchOptions& options) {
   BenchSettings settings;
   const char* usual_rays = options.pipelines.empty() ? kAllRays : kPipelineRays;
-  settings.rays = parse_rays(options.rays.empty() ? usual_rays : options.rays);
+  settings.rays = split_known_words("--rays", options.rays.empty() ? usual_rays : options.rays,
+                                    bench_ray_names());
   settings.threads = parse_threads(options.threads);
   settings.apis = parse_apis(options.apis);
   for (const std::string& isa : split_different_words("--isa", options.isas)) {

@@ -210,6 +210,16 @@ std::vector<std::string> split_different_words(const std::string& option, const 
   return words;
 }
 
+std::vector<std::string> split_known_words(const std::string& option, const std::string& text,
+                                           const std::vector<std::string>& known) {
+  std::vector<std::string> words = split_different_words(option, text);
+  for (const std::string& word : words) {
+    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+    throw UsageError(option + " has '" + word + "', expected some of " + joined_words(known));
+  }
+  return words;
+}
+
 std::string joined_words(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;

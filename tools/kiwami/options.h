@@ -69,6 +69,10 @@ std::vector<std::string> split_words(const std::string& option, const std::strin
 /// The same, where `option` is also named when a word comes twice.
 std::vector<std::string> split_different_words(const std::string& option, const std::string& text);
 
+/// The same, where each is one of the known ones.
+std::vector<std::string> split_known_words(const std::string& option, const std::string& text,
+                                           const std::vector<std::string>& known);
+
 /// "a, b, c".
 std::string joined_words(const std::vector<std::string>& words);
 
