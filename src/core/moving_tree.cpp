@@ -14,10 +14,10 @@ namespace {
 /// Bounds of a slot that nothing is in during a segment: they stay finite at any time between.
 constexpr float kUnused = 0x1p100f;
 constexpr uint32_t kMaxSegments = KIWAMI_MAX_TIME_STEPS - 1;
-/// Segments are divided into so many at most, and short ones not at all: little would be gained
-/// beyond, and each division takes as much time as all before.
-constexpr uint32_t kMaxDivision = 4, kMaxDividedSegments = 16;
-/// Segments are divided where the boxes get smaller than this part of what they were, on average
+/// Segments are halved up to so many, and once: a second time takes twice as long as the first and
+/// gains little.
+constexpr uint32_t kMostHalves = 16;
+/// Segments are halved where the boxes get smaller than this part of what they were, on average
 /// over time; where they may, those in the middle get smaller by twice as much.
 constexpr double kWorthwhile = 0.9, kPromising = 0.85;
 /// Segments that are looked at for that.
@@ -225,17 +225,15 @@ void MovingTree::build(Array<BuildPrimitive> boxes, const Bounds& extent, const 
 template <int N>
 void MovingTree::bound(const MovingSource& source, Memory& memory, const Parallel& parallel) {
   fill<N>(source, memory, parallel);
-  const uint32_t most = std::min(kMaxDivision * time_.segment_count, kMaxDividedSegments);
-  while (2 * time_.segment_count <= most && is_promising<N>(source, memory, parallel)) {
-    const double area = mean_area<N>(memory, parallel);
-    Array<unsigned char> before = std::move(bounds_);
-    time_.segment_count *= 2;
-    fill<N>(source, memory, parallel);
-    if (mean_area<N>(memory, parallel) <= kWorthwhile * area) continue;
-    bounds_ = std::move(before);
-    time_.segment_count /= 2;
-    return;
-  }
+  if (2 * time_.segment_count > kMostHalves) return;
+  if (!is_promising<N>(source, memory, parallel)) return;
+  const double area = mean_area<N>(memory, parallel);
+  Array<unsigned char> before = std::move(bounds_);
+  time_.segment_count *= 2;
+  fill<N>(source, memory, parallel);
+  if (mean_area<N>(memory, parallel) <= kWorthwhile * area) return;
+  bounds_ = std::move(before);
+  time_.segment_count /= 2;
 }
 
 /// Whether divided segments may be worthwhile, which costs less to find out than to divide them.
