@@ -68,9 +68,10 @@ struct BinaryWalk {
     const TreeView& leaves = tree.scene.tree;
     const auto& ids =
         index_leaf_at<kBinaryBlockWidth>(leaves.memory, ChildReference::to_leaf(offset, 1)).id;
-    uint32_t lanes = 0;
-    for (int lane = 0; lane < kBinaryBlockWidth; ++lane) {
-      lanes |= (ids[lane] != KIWAMI_INVALID_ID ? 1u : 0u) << lane;
+    uint32_t lanes = 0, bit = 1;
+    for (const uint32_t id : ids) {
+      if (id != KIWAMI_INVALID_ID) lanes |= bit;
+      bit <<= 1;
     }
     BinaryQuery::Room room;
     NoProbe probe;
