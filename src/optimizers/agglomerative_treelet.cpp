@@ -8,7 +8,7 @@ class AgglomerativeShaper {
  public:
   explicit AgglomerativeShaper(const TreeletConfig& config) : costs_(config) {}
 
-  bool shape(const Cluster* leaves, uint32_t count, double cost, Join* joins) const {
+  bool shape(const TreeletCluster* leaves, uint32_t count, double cost, Join* joins) const {
     Clusters clusters;
     for (uint32_t i = 0; i < count; ++i) clusters.add(leaves[i], i);
     for (uint32_t made = 0; made + 1 < count; ++made) {
@@ -22,7 +22,7 @@ class AgglomerativeShaper {
   /// What is left to join, with the area around each pair.
   class Clusters {
    public:
-    void add(const Cluster& cluster, uint32_t number) {
+    void add(const TreeletCluster& cluster, uint32_t number) {
       clusters_[size_] = cluster;
       numbers_[size_] = number;
       measure(size_++);
@@ -66,7 +66,7 @@ class AgglomerativeShaper {
     void set(uint32_t i, uint32_t j, float area) { (i > j ? areas_[i][j] : areas_[j][i]) = area; }
 
     uint32_t size_ = 0;
-    Cluster clusters_[kMaxTreeletLeaves];
+    TreeletCluster clusters_[kMaxTreeletLeaves];
     uint32_t numbers_[kMaxTreeletLeaves];
     float areas_[kMaxTreeletLeaves][kMaxTreeletLeaves];  ///< [i][j] with j < i
   };

@@ -24,7 +24,7 @@ struct TreeletConfig {
 constexpr uint32_t kMaxTreeletLeaves = 20;
 
 /// What is known of a subtree.
-struct Cluster {
+struct TreeletCluster {
   Bounds bounds;
   uint32_t leaf_count;
   uint32_t primitive_count;
@@ -42,13 +42,13 @@ class ClusterCosts {
   explicit ClusterCosts(const TreeletConfig& config)
       : costs_(config.costs), max_leaf_size_(config.max_leaf_size) {}
 
-  Cluster leaf(const BinaryNode& node) const {
+  TreeletCluster leaf(const BinaryNode& node) const {
     return {node.bounds, 1, node.count, as_leaf(node.bounds.half_area(), node.count)};
   }
 
-  Cluster joined(const Cluster& left, const Cluster& right) const {
-    Cluster made = {left.bounds, left.leaf_count + right.leaf_count,
-                    left.primitive_count + right.primitive_count, 0.0};
+  TreeletCluster joined(const TreeletCluster& left, const TreeletCluster& right) const {
+    TreeletCluster made = {left.bounds, left.leaf_count + right.leaf_count,
+                           left.primitive_count + right.primitive_count, 0.0};
     made.bounds.extend(right.bounds);
     made.cost = of(made.bounds.half_area(), made.primitive_count, left.cost + right.cost);
     return made;
@@ -71,7 +71,7 @@ class ClusterCosts {
 };
 
 /// Shaper has
-///   bool shape(const Cluster* leaves, uint32_t count, double cost, Join* joins) const
+///   bool shape(const TreeletCluster* leaves, uint32_t count, double cost, Join* joins) const
 /// which finds the count - 1 joins of a treelet, the root's last, and returns whether they cost
 /// less than the given shape. Every subtree is restructured after those below it, so the tree is
 /// the same for any number of threads.
@@ -140,7 +140,7 @@ class TreeletPass {
   struct Treelet {
     uint32_t size = 0;
     uint32_t pairs_used = 0;
-    Cluster leaves[kMaxTreeletLeaves];
+    TreeletCluster leaves[kMaxTreeletLeaves];
     BinaryNode nodes[kMaxTreeletLeaves];  ///< of the leaves
     uint32_t pairs[kMaxTreeletLeaves];    ///< where siblings stand
     const Join* joins;
@@ -195,7 +195,7 @@ class TreeletPass {
   ClusterCosts costs_;
   const Shaper& shaper_;
   Memory& memory_;
-  Array<Cluster> clusters_;  ///< by slot
+  Array<TreeletCluster> clusters_;  ///< by slot
 };
 
 }  // namespace kiwami

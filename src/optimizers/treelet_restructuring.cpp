@@ -12,13 +12,13 @@ constexpr uint32_t kMaxOptimalLeaves = 8;
 /// The least cost of each subset of a treelet's leaves, and how it is divided.
 class SubsetTable {
  public:
-  SubsetTable(const Cluster* leaves, uint32_t count, const ClusterCosts& costs) {
+  SubsetTable(const TreeletCluster* leaves, uint32_t count, const ClusterCosts& costs) {
     bounds_[0] = Bounds::empty();
     primitive_counts_[0] = 0;
     // A subset's own subsets are lesser numbers.
     for (uint32_t subset = 1; subset < 1u << count; ++subset) {
       const uint32_t rest = subset & (subset - 1);
-      const Cluster& leaf = leaves[std::countr_zero(subset)];
+      const TreeletCluster& leaf = leaves[std::countr_zero(subset)];
       bounds_[subset] = bounds_[rest];
       bounds_[subset].extend(leaf.bounds);
       primitive_counts_[subset] = primitive_counts_[rest] + leaf.primitive_count;
@@ -56,7 +56,7 @@ class OptimalShaper {
  public:
   explicit OptimalShaper(const TreeletConfig& config) : costs_(config) {}
 
-  bool shape(const Cluster* leaves, uint32_t count, double cost, Join* joins) const {
+  bool shape(const TreeletCluster* leaves, uint32_t count, double cost, Join* joins) const {
     const SubsetTable table(leaves, count, costs_);
     const uint32_t all = (1u << count) - 1;
     // What rounding alone could gain is left alone.
