@@ -167,7 +167,7 @@ TEST_P(Api, IsCaughtWhenAnAnswerIsOffByOneBit) {
 
 TEST_P(Api, IsCaughtWhenABoxIsTooSmall) {
   const Scene scene = scene_of(closed_meshes().front());
-  const Expected expected = expected_of(PlainOracle(scene), scene, 20000, Random(2));
+  const Expected expected = expected_of(PlainOracle(scene), scene, 4000, Random(2));
   for (const NamedKernels& kernels : all_kernels()) {
     if (kernels.isa != GetParam()) continue;
     const SceneHandle committed = make_scene(device(1), scene, {kernels.width});

@@ -118,7 +118,7 @@ TEST(SplitTrees, AgreeWithThePlainLoopOnClosedMeshesAndAtTheSidesOfBoxes) {
 TEST(SplitTrees, AreCaughtWhereTrianglesAreCountedTwice) {
   const Scene scene = scene_of(closed_meshes().front());
   const SplitScene split(scene);
-  const Expected expected = expected_of(PlainOracle(scene), scene, 20000, Random(5));
+  const Expected expected = expected_of(PlainOracle(scene), scene, 4000, Random(5));
   for (const NamedKernels& kernels : all_kernels()) {
     kiwami::SceneView view = split.view(kernels.width);
     EXPECT_EQ(difference(kernels, view, expected), "") << kernels.name;
