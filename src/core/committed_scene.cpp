@@ -148,6 +148,7 @@ void CommittedScene::destroy(CommittedScene* scene) noexcept {
 void CommittedScene::number_triangles(const AttachedGeometry* geometries, size_t count) {
   mesh_views_ = Array<TriangleMeshView>(memory_, count);
   ranges_ = Array<GeometryRange>(memory_, count);
+  opacities_.clear();
   view_.has_masks = 0;
   uint64_t next_id = 0;
   size_t used = 0;

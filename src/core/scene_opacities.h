@@ -10,11 +10,16 @@ namespace kiwami {
 class SceneOpacities {
  public:
   SceneOpacities() = default;
-  ~SceneOpacities() {
-    for (size_t i = 0; i < held_; ++i) maps_[i]->release();
-  }
+  ~SceneOpacities() { clear(); }
   SceneOpacities(const SceneOpacities&) = delete;
   SceneOpacities& operator=(const SceneOpacities&) = delete;
+
+  void clear() {
+    for (size_t i = 0; i < held_; ++i) maps_[i]->release();
+    held_ = 0;
+    views_ = {};
+    maps_ = {};
+  }
 
   /// Takes the map of mesh number `mesh` of count, which may have none.
   void set(Memory& memory, size_t mesh, size_t count, OpacityMap* map) {

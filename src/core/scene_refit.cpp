@@ -24,8 +24,8 @@ CommittedScene::CommittedScene(const CommittedScene& other, const Parallel& para
 }
 
 bool CommittedScene::fits(const AttachedGeometry* geometries, size_t count) const {
-  // What is known of a tree beside its boxes is not in a file.
-  if (image_.get() || !meshes_.empty()) return false;
+  // What is known of a tree beside its boxes is not in a file; parts that are gone leave no trace.
+  if (image_.get() || !meshes_.empty() || view_.part_count != 0) return false;
   size_t next = 0;
   for (size_t i = 0; i < count; ++i) {
     if (geometries[i].geometry->kind() != GeometryKind::kTriangleMesh) return false;

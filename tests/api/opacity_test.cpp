@@ -48,6 +48,19 @@ TEST_F(OpacityApi, IsSeenFromTheNextCommitOn) {
   EXPECT_TRUE(is_hit(scene));
 }
 
+TEST_F(OpacityApi, IsSeenFromTheNextRefitOnHoweverManyThereAre) {
+  const Scene scene = make_scene(device_, mesh_);
+  const kiwami_opacity_desc transparent = desc();
+  for (int i = 0; i < 6; ++i) {
+    const bool is_transparent = i % 3 != 2;
+    ASSERT_EQ(
+        kiwami_triangle_mesh_set_opacity(mesh_.get(), is_transparent ? &transparent : nullptr),
+        KIWAMI_OK);
+    ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK) << last_error();
+    EXPECT_EQ(is_hit(scene), !is_transparent) << i;
+  }
+}
+
 TEST_F(OpacityApi, BadArgumentsAreNamed) {
   EXPECT_EQ(kiwami_opacity_desc_init(nullptr, 64), KIWAMI_ERROR_INVALID_ARGUMENT);
   kiwami_opacity_desc bad = desc();

@@ -76,6 +76,24 @@ kiwami_ray ray_at(float x, float y) {
   return ray;
 }
 
+TEST(Spheres, AreGoneAfterTheRefitsThatFollowTheirEnd) {
+  const Device device = make_device();
+  const Triangles triangles = square(1);
+  Scene scene = make_scene(device, make_mesh(device, triangles.desc()));
+  const std::vector<float> points = {5, 5, 0, 1};
+  const Geometry spheres = make(device, spheres_of(points));
+  uint32_t id = 0;
+  ASSERT_EQ(kiwami_scene_attach(scene.get(), spheres.get(), &id), KIWAMI_OK);
+  ASSERT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK);
+  EXPECT_TRUE(is_occluded(scene, ray_at(5, 5)));
+  ASSERT_EQ(kiwami_scene_detach(scene.get(), id), KIWAMI_OK);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(kiwami_scene_refit(scene.get()), KIWAMI_OK) << last_error();
+    EXPECT_FALSE(is_occluded(scene, ray_at(5, 5))) << i;
+    EXPECT_TRUE(is_occluded(scene, ray_at(0.5f, -0.25f))) << i;
+  }
+}
+
 TEST(Spheres, AreEnteredAndLeft) {
   const Device device = make_device();
   const Scene scene = make_scene(device, make(device, spheres_of({1, 2, 3, 2})));
