@@ -10,8 +10,7 @@ namespace {
 
 /// Nodes of this level are asked for the strength.
 constexpr uint32_t kEstimateLevel = 6;
-/// More than rounding may take from a bound.
-constexpr double kBoundSlack = 1.00001;
+/// More than rounding may take from a sum.
 constexpr double kSumSlack = 1e-6;
 
 float rounded_up(double value) {
@@ -81,28 +80,6 @@ double lobe_of(const RouletteReceiver& receiver, const BoxView& view, double lea
   const double e = receiver.eccentricity;
   const double radius = (1.0 - e) / (1.0 - e * view.cosine(receiver.axis, false, least_square));
   return radius * radius;
-}
-
-/// The square of the same, without a root. square: of the distance, at least least_square.
-double squared_lobe_of(const RouletteReceiver& receiver, const BoxView& view, double square) {
-  double squared_cosine = 1.0;
-  if (receiver.has_normal) {
-    const double top = view.top(receiver.normal, receiver.takes_both_sides);
-    if (!(top > 0.0)) return 0.0;
-    squared_cosine = std::min(1.0, top * top / square);
-  }
-  switch (receiver.lobe) {
-    case RouletteLobe::kSphere:
-      return 1.0;
-    case RouletteLobe::kCosine:
-      return squared_cosine;
-    case RouletteLobe::kTangentSphere:
-      return squared_cosine * squared_cosine;
-    case RouletteLobe::kEllipsoid:
-      break;
-  }
-  const double lobe = lobe_of(receiver, view, square);
-  return lobe * lobe;
 }
 
 }  // namespace
@@ -182,17 +159,6 @@ double PerfectLightTree::leaf_bound(const RouletteReceiver& receiver, const Node
   const BoxView view(receiver, node.centre, node.half_extent);
   const double square = std::max({view.middle_square, view.radius_square, least_square_});
   return static_cast<double>(node.peak) * lobe_of(receiver, view, least_square_) / square;
-}
-
-double PerfectLightTree::squared_limit(const RouletteReceiver& receiver, const Node& node,
-                                       double strength, double least) const {
-  const BoxView view(receiver, node.centre, node.half_extent);
-  const double square = std::max(view.nearest_square, least_square_);
-  const double most = kBoundSlack * strength * static_cast<double>(node.peak);
-  // No lobe is above 1: many nodes fail by their distance alone.
-  if (!(least * square < most)) return 0.0;
-  const double limit = most / square;
-  return limit * limit * squared_lobe_of(receiver, view, square);
 }
 
 double PerfectLightTree::strength_for(const RouletteReceiver& receiver, double count) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lights/light_clusters.h"
+#include "lights/roulette_bound.h"
 #include "lights/roulette_numbers.h"
 
 namespace kiwami {
@@ -21,26 +22,6 @@ struct RouletteRules {
 struct RouletteExtras {
   const kiwami_light_lobe* lobe;
   const kiwami_light_pixel* pixel;
-};
-
-/// By what, besides energy and squared distance, a light is accepted.
-enum class RouletteLobe {
-  kSphere,  ///< nothing, of what is not below the tangent plane
-  kCosine,
-  kTangentSphere,
-  kEllipsoid
-};
-
-/// A receiver of the roulette, without its random number.
-struct RouletteReceiver {
-  float position[3];
-  float normal[3];  ///< of length 1, or 0, 0, 0
-  bool takes_both_sides;
-  bool has_normal;
-  RouletteLobe lobe;
-  float axis[3];        ///< of the ellipsoid, of length 1
-  double eccentricity;  ///< of the ellipsoid, 0 to below 1
-  uint64_t link_mask;
 };
 
 /// A leaf that was accepted, and the probability with which it is.
@@ -90,20 +71,11 @@ class PerfectLightTree {
   float probability(const RouletteReceiver& receiver, double strength, uint32_t leaf) const;
 
  private:
-  struct Node {
-    float centre[3], half_extent[3];
-    float energy;  ///< of all leaves below; of a leaf its own
-    float peak;    ///< the greatest of a leaf below
-    uint64_t link_mask;
-  };
+  using Node = RouletteNode;
   static constexpr uint32_t kNone = 0xFFFFFFFFu;
 
   static Node node_of(const LightCluster& cluster, double scale);
   static Node joined(const Node& left, const Node& right);
-  /// Lights below the squares of whose numbers are not less than this are not accepted; 0 where none
-  /// is whose number is at least `least`.
-  double squared_limit(const RouletteReceiver& receiver, const Node& node, double strength,
-                       double least) const;
   double leaf_bound(const RouletteReceiver& receiver, const Node& node) const;
 
   Array<Node> nodes_;       ///< the children of i are 2i + 1 and 2i + 2
@@ -120,34 +92,55 @@ void PerfectLightTree::play(const RouletteReceiver& receiver, double strength,
   struct Task {
     uint32_t prefix, level;  ///< of the node: the first bits of its leaves' places, and how many
     typename Numbers::Value value;
+
+    size_t number() const { return (size_t{1} << level) - 1 + prefix; }
   };
+  const RouletteBound bound(receiver, strength, least_square_);
+  // What is left to do for a node, or for a leaf: settle_by(admits) has its number, if admitted.
+  const auto enters = [&](const Task& task, const auto& settle_by) {
+    const Node& node = nodes_[task.number()];
+    if ((node.link_mask & receiver.link_mask) == 0) return false;
+    const double before = numbers.least_bound(task.value, level_count_ - task.level);
+    const RouletteLimit limit = bound.limit_of(node, before);
+    return limit.admits(before) && settle_by([&](double least) { return limit.admits(least); });
+  };
+  const auto visit_leaf = [&](const Task& task, const auto& settle_by) {
+    const Node& node = nodes_[task.number()];
+    if ((node.link_mask & receiver.link_mask) == 0) return;
+    const double most = strength * leaf_bound(receiver, node);
+    if (!(numbers.least_bound(task.value, 0) < most)) return;
+    if (!settle_by([&](double least) { return least < most; })) return;
+    if (!numbers.accepts(task.value, most)) return;
+    accept(AcceptedLeaf{leaves_[task.prefix], static_cast<float>(most < 1.0 ? most : 1.0)});
+  };
+  const auto is_settled = [](const auto&) { return true; };
+  Task task{0, 0, numbers.root()};
+  if (level_count_ == 0) return visit_leaf(task, is_settled);
+  if (!enters(task, is_settled)) return;
   Task stack[64];
   uint32_t size = 0;
-  stack[size++] = {0, 0, numbers.root()};
-  while (size != 0) {
-    Task task = stack[--size];
-    const uint32_t below = level_count_ - task.level;
-    const size_t number = (size_t{1} << task.level) - 1 + task.prefix;
-    const Node& node = nodes_[number];
-    if ((node.link_mask & receiver.link_mask) == 0) continue;
-    const double before = numbers.least(task.value, below);
+  for (;;) {
+    const size_t parent = task.number();
+    const uint32_t below = level_count_ - task.level - 1;
+    typename Numbers::Value values[2];
+    const uint32_t side = numbers.divide(task.value, parent, below + 1, values);
+    Task first{2 * task.prefix + side, task.level + 1, values[0]};
+    Task second{2 * task.prefix + (side ^ 1), task.level + 1, values[1]};
+    const auto settle_second = [&](const auto& admits) {
+      return numbers.settle(second.value, parent, below, admits);
+    };
     if (below == 0) {
-      const double most = strength * leaf_bound(receiver, node);
-      if (!(before < most)) continue;
-      numbers.settle(task.value, below);
-      if (!(numbers.least(task.value, below) < most)) continue;
-      accept(AcceptedLeaf{leaves_[task.prefix], static_cast<float>(most < 1.0 ? most : 1.0)});
+      visit_leaf(first, is_settled);
+      visit_leaf(second, settle_second);
     } else {
-      const double most = squared_limit(receiver, node, strength, before);
-      if (!(before * before < most)) continue;
-      numbers.settle(task.value, below);
-      const double least = numbers.least(task.value, below);
-      if (!(least * least < most)) continue;
-      typename Numbers::Value values[2];
-      numbers.divide(task.value, number, below, values);
-      stack[size++] = {2 * task.prefix + 1, task.level + 1, values[1]};
-      stack[size++] = {2 * task.prefix, task.level + 1, values[0]};
+      if (enters(second, settle_second)) stack[size++] = second;
+      if (enters(first, is_settled)) {
+        task = first;
+        continue;
+      }
     }
+    if (size == 0) return;
+    task = stack[--size];
   }
 }
 

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The random numbers that lights are compared with in a hierarchical Russian roulette, known by the
 // least of a subtree before the others are: for leaves of a perfect binary tree. A value stands for
-// the numbers of a subtree; least() of it is their least, or, until settle() has been called, no
-// more than that.
+// the numbers of a subtree; none of them is below its least_bound(). divide() hands the least number
+// on to one child, whose side it returns, as the first value; the least of the other one's is not
+// known before settle(), which says early that admits(bound) is false where the bound has risen.
+// accepts() compares the number of a leaf with a probability.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+
+#include "lights/exponential.h"
 
 namespace kiwami {
 
@@ -48,16 +51,21 @@ class LazyNumbers {
         is_scrambled_(is_scrambled) {}
 
   Value root() const { return 0; }
-  void settle(Value&, uint32_t) const {}
-  double least(Value value, uint32_t below) const {
+  double least_bound(Value value, uint32_t below) const {
     return (static_cast<double>(uint64_t{value} << below) + rest_) / count_;
   }
-  void divide(Value value, size_t node, uint32_t below, Value (&children)[2]) const {
-    const uint32_t bit = is_scrambled_
-                             ? static_cast<uint32_t>(mixed_bits(random_, kNodeStream + node) & 1)
-                             : turn_ >> (below - 1) & 1;
-    children[0] = 2 * value + bit;
-    children[1] = 2 * value + (bit ^ 1);
+  bool accepts(Value value, double probability) const {
+    return least_bound(value, 0) < probability;
+  }
+  uint32_t divide(Value value, size_t node, uint32_t below, Value (&children)[2]) const {
+    children[0] = 2 * value;
+    children[1] = 2 * value + 1;
+    return is_scrambled_ ? static_cast<uint32_t>(mixed_bits(random_, kNodeStream + node) & 1)
+                         : turn_ >> (below - 1) & 1;
+  }
+  template <typename Admits>
+  bool settle(Value&, size_t, uint32_t, const Admits&) const {
+    return true;  // its bound, which was admitted, is its least
   }
 
  private:
@@ -82,47 +90,51 @@ constexpr uint64_t kFirstNumber = kNodeStream - 1;
 
 /// Independent numbers (Tokuyoshi & Harada 2019): the least of a node's is that of one of its
 /// children, each with the same probability since they have as many leaves; the other's is that of
-/// as many uniform numbers which are not less. The least of 2^n numbers takes n square roots, in
-/// place of the paper's power, so that it is the same to the bit everywhere; places without a light
-/// have numbers, too. Source: where bits come from, 53 for a number and a last one.
+/// as many uniform numbers which are not less. Kept as e = -ln(1 - u), exponentially distributed:
+/// the least of n such numbers is one of them over n, and those above a bound are the bound plus as
+/// many new ones, in place of the paper's powers. Places without a light have numbers, too. Source:
+/// where bits come from, 53 for a number and a last one.
 template <typename Source>
 class IndependentNumbersOf {
  public:
-  /// The least number of a subtree, or that of the subtree above and the node there, of whose number
-  /// this one is to be made: most subtrees are not visited whatever theirs is, so it is made late.
-  struct Value {
-    double least;
-    uint64_t node;
-  };
+  using Value = double;  ///< the least of a subtree, or of the one above until it is settled
 
   IndependentNumbersOf(const Source& source, uint32_t level_count)
       : source_(source),
-        root_(least_of_uniform(number_of_bits(source.bits(kFirstNumber)), level_count)) {}
+        root_(exponential_of(number_of_bits(source.bits(kFirstNumber))) * share_of(level_count)) {}
 
-  Value root() const { return {root_, kSettled}; }
-  double least(const Value& value, uint32_t) const { return value.least; }
-  void settle(Value& value, uint32_t below) const {
-    if (value.node == kSettled) return;
-    const uint64_t bits = source_.bits(kNodeStream + value.node);
-    value.least += (1.0 - value.least) * least_of_uniform(number_of_bits(bits), below);
-    value.node = kSettled;
+  Value root() const { return root_; }
+  /// 1 - exp(-e) is above the first four terms of its series, which rise up to there.
+  double least_bound(Value value, uint32_t) const {
+    const double e = value < 1.5 ? value : 1.5;
+    return e * (1.0 - e * (1.0 / 2.0 - e * (1.0 / 6.0 - e * (1.0 / 24.0))));
   }
-  /// Of a settled value.
-  void divide(const Value& value, size_t node, uint32_t, Value (&children)[2]) const {
-    const uint64_t bits = source_.bits(kNodeStream + node);
-    children[bits & 1] = value;
-    children[(bits & 1) ^ 1] = {value.least, node};
+  bool accepts(Value value, double probability) const {
+    // -ln(1 - p) is above p, and rarely between p and e.
+    return value < probability || probability >= 1.0 || value < exponential_of(probability);
   }
-
-  /// 1 - (1 - u)^(1 / 2^n), each square root of which is taken as 1 - sqrt(1 - u) = u / (1 + sqrt(1
-  /// - u)), which keeps all digits of what is small.
-  static double least_of_uniform(double u, uint32_t n) {
-    for (; n != 0; --n) u /= 1.0 + std::sqrt(1.0 - u);
-    return u;
+  uint32_t divide(Value value, size_t node, uint32_t, Value (&children)[2]) const {
+    children[0] = children[1] = value;
+    return static_cast<uint32_t>(source_.bits(kNodeStream + node) & 1);
+  }
+  template <typename Admits>
+  bool settle(Value& value, size_t parent, uint32_t below, const Admits& admits) const {
+    const double u = number_of_bits(source_.bits(kNodeStream + parent));
+    const double share = share_of(below);
+    // -ln(1 - u) is not below u: most need no logarithm.
+    if (!admits(least_bound(value + u * share, below))) return false;
+    value += exponential_of(u) * share;
+    return admits(least_bound(value, below));
   }
 
  private:
-  static constexpr uint64_t kSettled = ~uint64_t{0};
+  /// 2^-below: each of so many leaves has the least number as likely.
+  static double share_of(uint32_t below) {
+    const uint64_t bits = uint64_t{1023 - below} << 52;
+    double share;
+    std::memcpy(&share, &bits, sizeof share);
+    return share;
+  }
 
   Source source_;
   double root_;

@@ -357,24 +357,45 @@ TEST(LightSplitting, ThresholdSaysHowMuchIsSplit) {
   EXPECT_GT(last, 10);
 }
 
-/// The numbers of all leaves, down the tree as the roulettes go.
+double uniform_of(const kiwami::LazyNumbers& numbers, uint32_t value, uint32_t below) {
+  return numbers.least_bound(value, below);
+}
+double uniform_of(const kiwami::IndependentNumbers&, double value, uint32_t) {
+  return -std::expm1(-value);
+}
+
+/// The numbers of all leaves by their places, down the tree as the roulettes go.
 template <typename Numbers>
-void collect_numbers(const Numbers& numbers, typename Numbers::Value value, size_t node,
-                     uint32_t below, std::vector<double>& leaves) {
-  const double before = numbers.least(value, below);
-  numbers.settle(value, below);
-  const double least = numbers.least(value, below);
-  EXPECT_LE(before, least);
-  if (below == 0) return leaves.push_back(least);
-  typename Numbers::Value children[2];
-  numbers.divide(value, node, below, children);
-  const size_t first = leaves.size();
-  for (size_t i = 0; i < 2; ++i) {
-    collect_numbers(numbers, children[i], 2 * node + 1 + i, below - 1, leaves);
+std::vector<double> collect_numbers(const Numbers& numbers, typename Numbers::Value value,
+                                    size_t node, uint32_t below) {
+  const double least = uniform_of(numbers, value, below);
+  EXPECT_LE(numbers.least_bound(value, below), least * (1.0 + 1e-14));
+  if (below == 0) {
+    for (const double apart : {1e-13, 1e-3}) {
+      EXPECT_TRUE(numbers.accepts(value, least * (1.0 + apart)));
+      EXPECT_FALSE(numbers.accepts(value, least * (1.0 - apart)));
+    }
+    EXPECT_TRUE(numbers.accepts(value, 1.0));
+    return {least};
   }
-  const double actual =
-      *std::min_element(leaves.begin() + static_cast<std::ptrdiff_t>(first), leaves.end());
-  EXPECT_DOUBLE_EQ(least, actual) << "the least of a subtree, level " << below << " from below";
+  typename Numbers::Value children[2];
+  const uint32_t side = numbers.divide(value, node, below, children);
+  double admitted = numbers.least_bound(children[1], below - 1);
+  EXPECT_TRUE(numbers.settle(children[1], node, below - 1, [&](double bound) {
+    EXPECT_LE(admitted, bound);
+    admitted = bound;
+    return true;
+  }));
+  EXPECT_LE(admitted, numbers.least_bound(children[1], below - 1));
+  std::vector<double> leaves;
+  for (const uint32_t child : {0u, 1u}) {
+    const std::vector<double> below_child =
+        collect_numbers(numbers, children[child ^ side], 2 * node + 1 + child, below - 1);
+    leaves.insert(leaves.end(), below_child.begin(), below_child.end());
+  }
+  EXPECT_DOUBLE_EQ(least, *std::min_element(leaves.begin(), leaves.end()))
+      << "the least of a subtree, level " << below << " from below";
+  return leaves;
 }
 
 /// Marginals are uniform; returns the greatest correlation of two leaves.
@@ -390,8 +411,7 @@ double correlation_of_numbers(const MakeNumbers& make, uint32_t levels) {
         make((static_cast<double>(random.bits()) + static_cast<double>(random.bits()) * 0x1p-32) *
                  0x1p-32,
              levels);
-    std::vector<double> leaves;
-    collect_numbers(numbers, numbers.root(), 0, levels, leaves);
+    const std::vector<double> leaves = collect_numbers(numbers, numbers.root(), 0, levels);
     for (size_t i = 0; i < count; ++i) {
       EXPECT_TRUE(leaves[i] >= 0.0 && leaves[i] < 1.0);
       ++histogram[8 * i + static_cast<size_t>(leaves[i] * 8.0)];
@@ -414,6 +434,21 @@ double correlation_of_numbers(const MakeNumbers& make, uint32_t levels) {
     }
   }
   return greatest;
+}
+
+TEST(RouletteNumbers, ExponentialsAreThoseOfTheLibrary) {
+  Random random(seed(), 658);
+  EXPECT_EQ(kiwami::exponential_of(0.0), 0.0);
+  double greatest = 0.0;
+  for (uint64_t i = 0; i < ray_budget(100000); ++i) {
+    const double unit = (random.bits() + 0.5) * 0x1p-32;
+    const double u = i % 4 == 0   ? unit * std::exp2(-static_cast<double>(random.below(1000)))
+                     : i % 4 == 1 ? 1.0 - std::exp2(-53.0 * unit)
+                                  : unit;
+    const double expected = -std::log1p(-u);
+    greatest = std::max(greatest, std::fabs(kiwami::exponential_of(u) - expected) / expected);
+  }
+  EXPECT_LT(greatest, 1e-15);
 }
 
 TEST(RouletteNumbers, AreUniformAndTheLeastOfASubtreeIsKnown) {
