@@ -130,7 +130,23 @@ Array<Scene*> read_scenes(const kiwami_moving_instances_desc& desc, Device& devi
   return scenes;
 }
 
+/// Of count elements in a file.
+Instances::Elements borrowed(const unsigned char* data, size_t count, size_t element_size) {
+  Instances::Elements elements;
+  if (!data) return elements;
+  elements.copy =
+      Array<unsigned char>::borrow(const_cast<unsigned char*>(data), count * element_size);
+  elements.first = data;
+  elements.stride = element_size;
+  return elements;
+}
+
 }  // namespace
+
+bool is_usable(const InstanceTransform& transform) {
+  return is_finite(map_of(transform.inverse)) && is_finite(transform.forward) &&
+         transform.inverse_norm * transform.forward_norm <= kMaxCondition;
+}
 
 InstanceTransform transform_of(const float (&inverse)[4][3]) {
   InstanceTransform transform;
@@ -171,6 +187,21 @@ Instances::Instances(Device& device, const kiwami_moving_instances_desc& desc)
                        is_shared);
   scenes_ = read_scenes(desc, device);
   check_instances();
+  // The last step, which the destructor undoes.
+  for (Scene* scene : scenes_) scene->retain();
+}
+
+Instances::Instances(Device& device, FileImage& image, const SavedBuffers& buffers,
+                     Array<Scene*> scenes, bool is_trusted)
+    : Geometry(device, image, GeometryKind::kInstances, buffers.mask),
+      count_(buffers.count),
+      format_(TransformFormat::kMatrix),
+      time_{},
+      scenes_(std::move(scenes)),
+      indices_(borrowed(buffers.indices, buffers.count, sizeof(uint32_t))),
+      transforms_(borrowed(buffers.transforms, buffers.count, transform_size(format_))),
+      masks_(borrowed(buffers.masks, buffers.count, sizeof(uint32_t))) {
+  if (!is_trusted) check_instances();
   // The last step, which the destructor undoes.
   for (Scene* scene : scenes_) scene->retain();
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/saved_scene.h"
 #include "kiwami/moving_mesh.h"
 #include "math/rounding.h"
 
@@ -159,6 +160,21 @@ void MovingTree::build(Array<BuildPrimitive> boxes, const Bounds& extent, const 
   if (plan.width == 4) fill<4>(source, plan.memory, plan.parallel);
   if (plan.width == 8) fill<8>(source, plan.memory, plan.parallel);
   if (plan.width == 16) fill<16>(source, plan.memory, plan.parallel);
+}
+
+void MovingTree::restore(const SavedTree& saved, const TimeSteps& time,
+                         std::span<const unsigned char> bounds) {
+  const size_t node_bytes = size_t{saved.width} * (sizeof(MotionBounds<4>) / 4);
+  const uint64_t expected = time.segment_count * saved.node_count * node_bytes;
+  if (bounds.size() != expected) {
+    throw Error(KIWAMI_ERROR_INVALID_FILE,
+                "the moving boxes have %zu bytes, expected %llu for %u segments of %llu nodes",
+                bounds.size(), static_cast<unsigned long long>(expected), time.segment_count,
+                static_cast<unsigned long long>(saved.node_count));
+  }
+  tree_ = saved.part();
+  time_ = time;
+  bounds_ = Array<unsigned char>::borrow(const_cast<unsigned char*>(bounds.data()), bounds.size());
 }
 
 template <int N>

@@ -24,11 +24,12 @@ template <typename... Values>
 template <int N>
 class ReferenceChecker {
  public:
-  ReferenceChecker(const WideTree& tree, uint64_t id_count, Memory& memory)
+  ReferenceChecker(const WideTree& tree, const ReferenceLimits& limits, Memory& memory)
       : tree_(tree),
-        id_count_(id_count),
-        owned_slots_(memory, tree.node_count),
-        owned_lanes_(memory, tree.leaf_block_count),
+        limits_(limits),
+        owned_slots_(owned_array(limits.owned, tree.node_count, memory)),
+        owned_lanes_(owned_array(limits.owned ? limits.owned + tree.node_count : nullptr,
+                                 tree.leaf_block_count, memory)),
         stack_(memory) {
     owned_slots_.fill_zero();
     owned_lanes_.fill_zero();
@@ -56,12 +57,16 @@ class ReferenceChecker {
     uint32_t depth;  ///< nodes above it
   };
 
+  static Array<uint16_t> owned_array(uint16_t* given, uint64_t count, Memory& memory) {
+    return given ? Array<uint16_t>::borrow(given, count) : Array<uint16_t>(memory, count);
+  }
+
   void check_frame() const {
     for (int axis = 0; axis < 3; ++axis) {
       const float centre = tree_.view.centre[axis], bound = tree_.view.greatest_bound[axis];
-      // The greatest bound of what lies within KIWAMI_MAX_COORDINATE on both sides.
-      if (std::abs(centre) <= KIWAMI_MAX_COORDINATE && bound >= 0.0f &&
-          bound <= 2.0f * KIWAMI_MAX_COORDINATE) {
+      // The greatest bound of what lies within the limit on both sides, with some padding.
+      const float most = limits_.greatest_coordinate;
+      if (std::abs(centre) <= most && bound >= 0.0f && bound <= 2.0f * most) {
         continue;
       }
       fail(
@@ -134,9 +139,9 @@ class ReferenceChecker {
     const uint32_t* const ids = tree_.leaf_ids(index);
     for (uint32_t mask = owned_lanes_[index]; mask != 0; mask &= mask - 1) {
       const int lane = std::countr_zero(mask);
-      if (ids[lane] >= id_count_) {
+      if (ids[lane] >= limits_.id_count) {
         fail("lane %d of leaf block %zu has id %u, expected less than %llu", lane, index, ids[lane],
-             ull{id_count_});
+             ull{limits_.id_count});
       }
       if (tree_.leaf_layout == LeafLayout::kTriangles) check_vertices(index, lane);
     }
@@ -147,7 +152,7 @@ class ReferenceChecker {
     for (int i = 0; i < 9; ++i) {
       const float value = leaf.position[i / 3][i % 3][lane];
       // False where it is NaN.
-      if (std::abs(value) <= KIWAMI_MAX_COORDINATE) continue;
+      if (std::abs(value) <= limits_.greatest_coordinate) continue;
       fail("lane %d of leaf block %zu has a vertex at %g on axis %d, expected at most 2^60", lane,
            index, static_cast<double>(value), i % 3);
     }
@@ -159,7 +164,7 @@ class ReferenceChecker {
   }
 
   const WideTree& tree_;
-  uint64_t id_count_;
+  ReferenceLimits limits_;
   Array<uint16_t> owned_slots_;
   Array<uint16_t> owned_lanes_;
   GrowingArray<Visit> stack_;
@@ -170,10 +175,10 @@ class ReferenceChecker {
 
 }  // namespace
 
-void check_references(const WideTree& tree, uint64_t id_count, Memory& memory,
+void check_references(const WideTree& tree, const ReferenceLimits& limits, Memory& memory,
                       const Parallel& parallel) {
   with_width(tree.width, [&](auto width) {
-    ReferenceChecker<decltype(width)::value>(tree, id_count, memory).run(parallel);
+    ReferenceChecker<decltype(width)::value>(tree, limits, memory).run(parallel);
   });
 }
 

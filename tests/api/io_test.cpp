@@ -39,21 +39,6 @@ void expect_same_scene(const Scene& a, const Scene& b) {
   EXPECT_EQ(info_of(a).build_seconds, info_of(b).build_seconds);
 }
 
-/// A file in memory at a multiple of 64, as a caller would map it.
-class AlignedCopy {
- public:
-  explicit AlignedCopy(const Bytes& bytes) : storage_(bytes.size() + 64) {
-    const size_t shift = (64 - reinterpret_cast<uintptr_t>(storage_.data()) % 64) % 64;
-    data_ = storage_.data() + shift;
-    std::memcpy(data_, bytes.data(), bytes.size());
-  }
-  unsigned char* data() { return data_; }
-
- private:
-  Bytes storage_;
-  unsigned char* data_;
-};
-
 TEST(SceneFile, ComesBackTheSameFromMemoryAtEveryWidth) {
   const Device device = make_device();
   for (const uint32_t width : {4u, 8u, 16u}) {

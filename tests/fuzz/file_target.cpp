@@ -5,6 +5,7 @@
 #include "support/exercise.h"
 #include "support/file_forger.h"
 #include "support/random.h"
+#include "support/rich_scene.h"
 
 namespace kiwami_fuzz {
 namespace {
@@ -61,6 +62,15 @@ Bytes scene_seed(const Device& device, uint8_t how, uint32_t triangles, uint32_t
   });
 }
 
+Bytes rich_seed(const Device& device, uint8_t how, uint32_t parts, uint32_t width) {
+  kiwami_scene* made = nullptr;
+  kiwami_tests::make_rich_scene(device.get(), {parts, width, 3}, &made);
+  const Scene scene(made);
+  return saved(how, [&](const kiwami_save_desc* desc, uint64_t* size) {
+    kiwami_scene_save(made, desc, size);
+  });
+}
+
 Bytes bvh_seed(const Device& device, uint8_t how, bool over_boxes) {
   const std::vector<float> corners = random_corners(20);
   const Geometry mesh = make_mesh(device, corners);
@@ -107,6 +117,10 @@ std::vector<Bytes> make_seeds() {
     }
     seeds.push_back(scene_seed(device, how, 0, 4, KIWAMI_BUILDER_BINNED_SAH));
     seeds.push_back(scene_seed(device, how, 30, 4, KIWAMI_BUILDER_SPATIAL_SPLIT));
+    for (uint32_t parts = 1; parts < kiwami_tests::kRichAll; parts *= 2) {
+      seeds.push_back(rich_seed(device, how, parts | kiwami_tests::kRichInstances, 4));
+    }
+    seeds.push_back(rich_seed(device, how, kiwami_tests::kRichAll, 8));
     seeds.push_back(bvh_seed(device, how, false));
     seeds.push_back(bvh_seed(device, how, true));
   }

@@ -29,7 +29,7 @@ std::vector<kiwami_ray> make_rays() {
            random.symmetric(),
            random.symmetric(),
            1e30f,
-           0.0f,
+           random.unit(),
            ~0u,
            0u,
            0u};

@@ -201,7 +201,9 @@ BuiltScene::BuiltScene(const Device& device, const SceneFile& file, const BuildO
   }
 }
 
-BuiltScene::BuiltScene(const Device& device, const std::string& path, uint32_t load_flags) {
+BuiltScene::BuiltScene(const Device& device, const std::string& path, uint32_t load_flags,
+                       const std::vector<Instance>& instances)
+    : instances_(instances) {
   kiwami_load_desc desc;
   throw_on_error(kiwami_load_desc_init(&desc, sizeof desc), device.get());
   desc.path = path.c_str();

@@ -98,7 +98,9 @@ class BuiltScene : public Tracer {
  public:
   BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options = {});
   /// A scene that was saved, with its tree; `load_flags` are KIWAMI_LOAD_*. It needs no other file.
-  BuiltScene(const Device& device, const std::string& path, uint32_t load_flags);
+  /// The instances are those of the file, where it has any and they are outermost.
+  BuiltScene(const Device& device, const std::string& path, uint32_t load_flags,
+             const std::vector<Instance>& instances = {});
   ~BuiltScene() override { release(); }
   BuiltScene(const BuiltScene&) = delete;
   BuiltScene& operator=(const BuiltScene&) = delete;

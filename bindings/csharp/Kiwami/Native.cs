@@ -844,7 +844,7 @@ internal static class Native {
   const string Library = "kiwami";
 
   public const uint KIWAMI_ABI_VERSION = 0;
-  public const uint KIWAMI_FILE_FORMAT_VERSION = 1;
+  public const uint KIWAMI_FILE_FORMAT_VERSION = 2;
   public const uint KIWAMI_INVALID_ID = 4294967295;
   public const uint KIWAMI_LIGHT_MAX_CHOICES = 64;
   public const float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;

@@ -9,7 +9,7 @@ use std::os::raw::{c_char, c_void};
 pub type kiwami_result = i32;
 
 pub const KIWAMI_ABI_VERSION: u32 = 0;
-pub const KIWAMI_FILE_FORMAT_VERSION: u32 = 1;
+pub const KIWAMI_FILE_FORMAT_VERSION: u32 = 2;
 pub const KIWAMI_INVALID_ID: u32 = 4294967295;
 pub const KIWAMI_LIGHT_MAX_CHOICES: u32 = 64;
 pub const KIWAMI_MAX_COORDINATE: f32 = 1.152921504606847e+18;

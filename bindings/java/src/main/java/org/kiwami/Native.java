@@ -10,7 +10,7 @@ final class Native {
   private Native() {}
 
   static final int KIWAMI_ABI_VERSION = 0;
-  static final int KIWAMI_FILE_FORMAT_VERSION = 1;
+  static final int KIWAMI_FILE_FORMAT_VERSION = 2;
   static final int KIWAMI_INVALID_ID = 0xffffffff;
   static final int KIWAMI_LIGHT_MAX_CHOICES = 64;
   static final float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/part_checks.h"
+
+#include <atomic>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/instances.h"
+
+namespace kiwami::file {
+namespace {
+
+template <typename... Values>
+[[noreturn]] void fail(const char* format, Values... values) {
+  throw Error(KIWAMI_ERROR_INVALID_FILE, format, values...);
+}
+
+/// Elements that one task looks at.
+constexpr size_t kBlockSize = 4096;
+
+/// The index of the first element that is not as it should be; count where all are.
+template <typename IsRight>
+size_t first_wrong(size_t count, const Parallel& parallel, IsRight&& is_right) {
+  std::atomic<size_t> wrong{count};
+  parallel.for_blocks(count, kBlockSize, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      if (is_right(i)) continue;
+      size_t lowest = wrong.load(std::memory_order_relaxed);
+      while (i < lowest && !wrong.compare_exchange_weak(lowest, i)) {
+      }
+      return;
+    }
+  });
+  return wrong.load();
+}
+
+/// False for NaN.
+bool is_error(double value) { return value >= 0.0 && value <= 0x1p480; }
+
+void check_numbers(const SavedInstances& instances) {
+  const Bounds& bounds = instances.bounds;
+  constexpr float most = 2.0f * KIWAMI_MAX_COORDINATE;
+  for (int axis = 0; axis < 3 && !bounds.is_empty(); ++axis) {
+    // False where one is NaN.
+    if (-most <= bounds.lower[axis] && bounds.lower[axis] <= bounds.upper[axis] &&
+        bounds.upper[axis] <= most) {
+      continue;
+    }
+    fail("the instances reach from %g to %g on axis %d, expected finite numbers",
+         static_cast<double>(bounds.lower[axis]), static_cast<double>(bounds.upper[axis]), axis);
+  }
+  const double far_origin = static_cast<double>(instances.far_origin);
+  if (is_error(far_origin) && is_error(instances.error.per_origin) &&
+      is_error(instances.error.fixed)) {
+    return;
+  }
+  fail("the errors of instances are %g, %g and %g, expected 0 to 2^480", far_origin,
+       instances.error.per_origin, instances.error.fixed);
+}
+
+}  // namespace
+
+void check_instances(const SavedInstances& instances, std::span<const uint32_t> shown,
+                     const SavedForest& forest, const Parallel& parallel) {
+  check_numbers(instances);
+  const auto& records = instances.records;
+  size_t wrong = first_wrong(records.size(), parallel, [&](size_t i) {
+    return records[i].prototype < shown.size() && is_usable(transform_of(records[i].column));
+  });
+  if (wrong != records.size()) {
+    fail(
+        "instance %zu shows scene %u of %zu by a transform that is singular or not finite, or "
+        "none of them",
+        wrong, records[wrong].prototype, shown.size());
+  }
+  const auto& starts = instances.starts;
+  wrong = first_wrong(starts.size(), parallel, [&](size_t i) {
+    const InstanceStart& start = starts[i];
+    if (start.instance >= records.size()) return false;
+    if (start.tree == InstanceStart::kAllTrees) return true;
+    return forest.owns(shown[records[start.instance].prototype], start.tree, start.subtree);
+  });
+  if (wrong != starts.size()) {
+    fail("start %zu is of instance %u and tree %u, expected a place in a tree that it shows", wrong,
+         starts[wrong].instance, starts[wrong].tree);
+  }
+}
+
+void check_motion_bounds(std::span<const float> bounds, const Parallel& parallel) {
+  const size_t wrong = first_wrong(bounds.size(), parallel, [&](size_t i) {
+    // Those of unused slots are the greatest. False where one is NaN.
+    return std::fabs(bounds[i]) <= 0x1p100f;
+  });
+  if (wrong == bounds.size()) return;
+  fail("number %zu of the moving boxes is %g, expected at most 2^100", wrong,
+       static_cast<double>(bounds[wrong]));
+}
+
+}  // namespace kiwami::file
