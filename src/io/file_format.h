@@ -52,7 +52,13 @@ enum class SectionType : uint32_t {
   kInstanceRecords = 14,  ///< InstanceRecord
   kInstanceMasks = 15,    ///< uint32 by instance
   kInstanceStarts = 16,   ///< InstanceStart
-  kMotionBounds = 17      ///< MotionBounds by segment and node
+  kMotionBounds = 17,     ///< MotionBounds by segment and node
+  kLightSet = 18,         ///< LightSetRecord
+  kLights = 19,           ///< LightRecord
+  kLightUserIds = 20,     ///< uint32 by light
+  kLightInstances = 21,   ///< SavedLightInstance
+  kLightLinks = 22,       ///< uint32 by cluster: LightLinks
+  kLightSlots = 23        ///< uint32 by slot: WideLightTree::slot_clusters
 };
 /// Of all of them.
 constexpr uint32_t kSectionVersion = 1;
@@ -173,6 +179,26 @@ struct InstancesRecord {
   double error_per_origin, error_fixed;  ///< HitError
 };
 static_assert(sizeof(InstancesRecord) == 56);
+
+/// A set of lights. Set 0 is the one that is saved; those that its instances show follow.
+struct LightSetRecord {
+  uint32_t width;
+  uint32_t builder;  ///< KIWAMI_LIGHT_BUILDER_*
+  uint32_t flags;    ///< KIWAMI_LIGHT_TREE_*
+  float distant_probability;
+  uint32_t node_count;
+  uint32_t reserved;
+  double build_seconds;
+};
+static_assert(sizeof(LightSetRecord) == 32);
+
+struct SavedLightInstance {
+  uint32_t set;
+  float power_scale;
+  float local_to_world[12];
+  uint64_t link_mask;
+};
+static_assert(sizeof(SavedLightInstance) == 64);
 
 struct ParameterRecord {
   uint32_t parameter;  ///< KIWAMI_PARAMETER_*; kOptimizer: value is one of KIWAMI_OPTIMIZER_*

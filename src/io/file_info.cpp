@@ -29,6 +29,13 @@ void describe_bvh(const FileReader& reader, kiwami_file_info& info) {
   info.node_count = reader.array<kiwami_bvh_node>(SectionType::kNodes).size();
 }
 
+void describe_lights(const FileReader& reader, kiwami_file_info& info) {
+  const auto record = reader.record<LightSetRecord>(SectionType::kLightSet);
+  info.bvh_width = record.width;
+  info.triangle_count = reader.array<uint32_t>(SectionType::kLightUserIds).size();
+  info.node_count = record.node_count;
+}
+
 }  // namespace
 
 kiwami_file_info describe_file(Device& device, const kiwami_load_desc& desc) {
@@ -52,6 +59,8 @@ kiwami_file_info describe_file(Device& device, const kiwami_load_desc& desc) {
     describe_scene(reader, device, info);
   } else if (is_known && info.kind == KIWAMI_FILE_BVH) {
     describe_bvh(reader, info);
+  } else if (is_known && info.kind == KIWAMI_FILE_LIGHTS) {
+    describe_lights(reader, info);
   } else {
     info.fit = KIWAMI_FIT_NONE;
   }

@@ -20,7 +20,14 @@ template <typename... Values>
 
 bool is_known(uint32_t type) {
   return type >= static_cast<uint32_t>(SectionType::kScene) &&
-         type <= static_cast<uint32_t>(SectionType::kMotionBounds);
+         type <= static_cast<uint32_t>(SectionType::kLightSlots);
+}
+
+const char* name_of_kind(uint32_t kind) {
+  return kind == KIWAMI_FILE_SCENE    ? "scene"
+         : kind == KIWAMI_FILE_BVH    ? "tree"
+         : kind == KIWAMI_FILE_LIGHTS ? "set of lights"
+                                      : "thing of a newer library";
 }
 
 }  // namespace
@@ -76,7 +83,7 @@ void FileReader::check_directory() {
     end = section.offset + section.bytes;
     // So the scenes are not more than the sections, and those of one are found quickly.
     const uint32_t least = scene_count_ == 0 ? 0 : scene_count_ - 1;
-    const uint32_t most = header_.kind == KIWAMI_FILE_SCENE ? scene_count_ : 0;
+    const uint32_t most = header_.kind == KIWAMI_FILE_BVH ? 0 : scene_count_;
     if (section.scene < least || section.scene > most) {
       fail("section %u is of scene %u, expected %u to %u", i, section.scene, least, most);
     }
@@ -132,9 +139,7 @@ void FileReader::check_kind(uint32_t kind) const {
          header_.format_version > KIWAMI_FILE_FORMAT_VERSION ? "a newer" : "an older");
   }
   if (header_.kind != kind) {
-    fail("the file holds a %s, expected a %s",
-         header_.kind == KIWAMI_FILE_SCENE ? "scene" : "tree or something newer",
-         kind == KIWAMI_FILE_SCENE ? "scene" : "tree");
+    fail("the file holds a %s, expected a %s", name_of_kind(header_.kind), name_of_kind(kind));
   }
   const uint32_t unknown = first_unknown();
   if (unknown == header_.section_count) return;

@@ -3,13 +3,13 @@
 #pragma once
 
 #include "bvh/triangle_source.h"
-#include "core/error.h"
 #include "core/geometry.h"
 #include "core/instances.h"
 #include "core/moving_mesh.h"
 #include "core/opacity_map.h"
 #include "core/shapes.h"
 #include "core/triangle_mesh.h"
+#include "io/blame_file.h"
 #include "io/file_reader.h"
 #include "io/file_writer.h"
 
@@ -71,20 +71,5 @@ class SavedGeometries {
 /// shows. Throws Error(INVALID_FILE) for contents that no geometry has, unless they are trusted.
 Reference<Geometry> make_geometry(const SavedGeometry& saved, Array<Scene*> scenes, Device& device,
                                   FileImage& image, bool is_trusted);
-
-/// Runs body; what it finds wrong in its arguments (a tree) is wrong with the file that they are
-/// from.
-template <typename Body>
-void blame_file(Body&& body) {
-  try {
-    body();
-  } catch (const Error& error) {
-    if (error.result() != KIWAMI_ERROR_INVALID_ARGUMENT &&
-        error.result() != KIWAMI_ERROR_VALIDATION) {
-      throw;
-    }
-    throw Error(KIWAMI_ERROR_INVALID_FILE, "the file is damaged: %s", error.what());
-  }
-}
 
 }  // namespace kiwami::file
