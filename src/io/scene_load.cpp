@@ -186,7 +186,7 @@ class SceneLoader {
 
   SavedParts parts_of(uint32_t number, std::span<const SavedTree> trees,
                       const SavedForest& forest) const {
-    SavedParts parts;
+    SavedParts parts{};
     size_t mesh_tree_count = 0;
     for (const SavedTree& tree : trees) {
       switch (forest.role(tree)) {

@@ -82,6 +82,21 @@ TEST(SceneFile, ComesBackTheSameFromAFile) {
   }
 }
 
+/// Larger than what one task reads.
+TEST(SceneFile, IsReadInSeveralPieces) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("scene.kiwami");
+  const Device device = make_device();
+  const Bytes file = saved(make_mixed_scene(device, 100000, 8));
+  ASSERT_GT(file.size(), size_t{2} << 23);
+  write_file(path, file);
+  kiwami_load_desc desc = default_load();
+  desc.path = path.c_str();
+  Scene loaded;
+  ASSERT_EQ(load(device, desc, loaded), KIWAMI_OK) << last_error();
+  EXPECT_TRUE(saved(loaded) == file);
+}
+
 TEST(SceneFile, ComesBackTheSameThroughStreams) {
   struct Stream {
     Bytes bytes;
