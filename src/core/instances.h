@@ -27,6 +27,9 @@ InstanceTransform transform_of(const float (&inverse)[4][3]);
 /// Whether kernels can carry rays by it: finite, not nearly singular, scales that margins cover.
 bool is_usable(const InstanceTransform& transform);
 
+/// Bytes of a transform at one step, as the caller gives it.
+size_t transform_bytes(TransformFormat format);
+
 /// An array of instances of one or several scenes, at rest or moving: the caller's buffers, or
 /// packed copies of them.
 class Instances final : public Geometry {
@@ -39,8 +42,10 @@ class Instances final : public Geometry {
   struct SavedBuffers {
     uint32_t count;
     uint32_t mask;
-    const unsigned char* indices;  ///< may be nullptr, as masks
-    const unsigned char* transforms;
+    TransformFormat format;
+    TimeSteps time;                   ///< of no segments: at rest
+    const unsigned char* transforms;  ///< of one step after the other
+    const unsigned char* indices;     ///< may be nullptr, as masks
     const unsigned char* masks;
   };
 
@@ -70,7 +75,9 @@ class Instances final : public Geometry {
     const unsigned char* at(uint32_t i) const { return first + size_t{i} * stride; }
   };
   const Elements& indices() const { return indices_; }
+  /// Of the first step. The next ones lie step_stride() bytes further each.
   const Elements& transforms() const { return transforms_; }
+  size_t step_stride() const { return step_stride_; }
   const Elements& masks() const { return masks_; }
   size_t copied_bytes() const override {
     return indices_.copy.bytes() + transforms_.copy.bytes() + masks_.copy.bytes();

@@ -6,6 +6,7 @@
 
 #include "core/collect_boxes.h"
 #include "core/committed_scene.h"
+#include "core/saved_scene.h"
 #include "math/rounding.h"
 
 namespace kiwami {
@@ -163,13 +164,10 @@ class MovingInstances::Source final : public MovingSource {
     return image_of(map_at(array, steps, is_end ? 0.0 : fraction), inner, margin);
   }
 
+  /// As far as boxes go: see image_of.
   static Bounds widened(const Bounds& box, double margin) {
-    Bounds wider;
-    for (int axis = 0; axis < 3; ++axis) {
-      wider.lower[axis] = round_down(double{box.lower[axis]} - margin);
-      wider.upper[axis] = round_up(double{box.upper[axis]} + margin);
-    }
-    return wider;
+    constexpr Affine same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}};
+    return image_of(same, box, margin);
   }
 
   static Bounds mean_box(const MovingArray& array, uint32_t number, const Bounds& inner) {
@@ -230,21 +228,30 @@ bool MovingInstances::add(const Instances& instances, uint32_t first, const Para
       return;
     }
   });
-  arrays_[array_count_++] = {steps, instances.time(), instances.format(), first, instances.count()};
-  used_floats_ += floats;
+  place(instances, first);
   return !is_faulty.load();
+}
+
+void MovingInstances::place(const Instances& instances, uint32_t first) {
+  arrays_[array_count_++] = {steps_.data() + used_floats_, instances.time(), instances.format(),
+                             first, instances.count()};
+  used_floats_ += step_floats_of(instances);
+}
+
+void MovingInstances::show(const InstancePart& all, Memory& memory) {
+  data_.instances = all;
+  data_.instances.starts = nullptr;
+  data_.arrays = arrays_.data();
+  data_.array_count = array_count_;
+  Array<TimeSteps> times(memory, array_count_);
+  for (uint32_t i = 0; i < array_count_; ++i) times[i] = arrays_[i].time;
+  time_ = common_steps(times.data(), times.size());
 }
 
 void MovingInstances::build(const InstancePart& all, CommittedScene* const* scenes,
                             const PartPlan& plan) {
   if (array_count_ == 0) return;
-  data_.instances = all;
-  data_.instances.starts = nullptr;
-  data_.arrays = arrays_.data();
-  data_.array_count = array_count_;
-  Array<TimeSteps> times(plan.memory, array_count_);
-  for (uint32_t i = 0; i < array_count_; ++i) times[i] = arrays_[i].time;
-  time_ = common_steps(times.data(), times.size());
+  show(all, plan.memory);
   const Source source(*this, scenes, plan.memory, plan.parallel);
   bounds_ = source.bounds();
   error_ = source.error();
@@ -257,6 +264,32 @@ void MovingInstances::build(const InstancePart& all, CommittedScene* const* scen
   if (plan.parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     validate(scenes, plan.memory, plan.parallel);
   }
+}
+
+void MovingInstances::borrow_steps(Memory& memory, size_t array_count,
+                                   std::span<const float> steps) {
+  arrays_ = Array<MovingArray>(memory, array_count);
+  steps_ = Array<float>::borrow(const_cast<float*>(steps.data()), steps.size());
+}
+
+void MovingInstances::restore(const InstancePart& all, const SavedMovingInstances& saved,
+                              const SavedTree* tree, Memory& memory) {
+  uint64_t count = 0;
+  for (const MovingArray& array : arrays()) count += array.count;
+  // There is no tree either where they show nothing.
+  if (tree) check_saved_part("instances that move", count, tree);
+  if (array_count_ == 0) return;
+  show(all, memory);
+  bounds_ = saved.bounds;
+  error_ = saved.error;
+  far_origin_ = saved.far_origin;
+  if (!tree) return;
+  tree_.restore(*tree, time_, saved.boxes);
+  data_.boxes = tree_.boxes();
+}
+
+SavedMovingInstances MovingInstances::saved() const {
+  return {{steps_.data(), steps_.size()}, tree_.bounds(), bounds_, error_, far_origin_};
 }
 
 ScenePart MovingInstances::part() const {

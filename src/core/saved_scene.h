@@ -32,6 +32,15 @@ struct SavedTree {
 /// has a tree of no more, and one of none has no tree.
 void check_saved_part(const char* name, uint64_t numbered_count, const SavedTree* saved);
 
+/// What MovingInstances makes, beside its tree.
+struct SavedMovingInstances {
+  std::span<const float> steps;  ///< as MovingArray has them
+  std::span<const unsigned char> boxes;
+  Bounds bounds;
+  HitError error;
+  float far_origin;
+};
+
 /// What SceneInstances makes, beside its tree.
 struct SavedInstances {
   std::span<const InstanceRecord> records;
@@ -42,11 +51,13 @@ struct SavedInstances {
   float far_origin;
   uint32_t rebraid_mode;
   double rebraid_budget;
+  SavedMovingInstances moving;
 };
 
 /// Parts whose geometries have nothing in them have no tree: nullptr.
 struct SavedParts {
   const SavedTree* instance_tree = nullptr;
+  const SavedTree* moving_instance_tree = nullptr;
   const SavedTree* shape_trees[3] = {};  ///< by ShapeKind
   const SavedTree* motion_tree = nullptr;
   const SavedTree* mesh_tree = nullptr;          ///< over the meshes that have a tree each

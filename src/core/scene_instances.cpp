@@ -128,25 +128,23 @@ SavedInstances SceneInstances::saved() const {
           error_,
           far_origin_,
           rebraid_mode_,
-          rebraid_config_.budget};
+          rebraid_config_.budget,
+          moving_.saved()};
 }
 
 void SceneInstances::restore(const AttachedGeometry* geometries, size_t count,
                              const SavedParts& saved, uint32_t width, Memory& memory) {
   width_ = width;
   collect_prototypes(geometries, count, width, memory);
-  uint64_t instance_count = 0;
-  for_each_instances(geometries, count, [&](const Instances& instances, uint32_t) {
-    instance_count += instances.count();
-  });
   const SavedInstances& from = saved.instances;
+  const uint64_t instance_count = place_moving(geometries, count, from.moving.steps, memory);
   const bool is_rebraided = from.rebraid_mode != KIWAMI_REBRAID_OFF;
   const uint64_t leaf_count = is_rebraided ? from.starts.size() : instance_count;
   const SavedTree* const tree = saved.instance_tree;
   if (instance_count > kMaxInstanceCount || from.records.size() != instance_count ||
       (!from.masks.empty() && from.masks.size() != instance_count) ||
-      (tree != nullptr) != (instance_count != 0) || (tree && tree->primitive_count > leaf_count) ||
-      (!is_rebraided && !from.starts.empty())) {
+      (tree != nullptr) != (instance_count != 0) || (!tree && saved.moving_instance_tree) ||
+      (tree && tree->primitive_count > leaf_count) || (!is_rebraided && !from.starts.empty())) {
     throw Error(KIWAMI_ERROR_INVALID_FILE,
                 "the scene has %llu instances, %zu records, %zu masks and %zu starts of them, and "
                 "a tree of %llu, expected as many of all that there are",
@@ -167,6 +165,30 @@ void SceneInstances::restore(const AttachedGeometry* geometries, size_t count,
   far_origin_ = from.far_origin;
   tree_ = tree->part();
   show();
+  moving_.restore(data_, from.moving, saved.moving_instance_tree, memory);
+}
+
+uint64_t SceneInstances::place_moving(const AttachedGeometry* geometries, size_t count,
+                                      std::span<const float> steps, Memory& memory) {
+  uint64_t instance_count = 0;
+  size_t moving_count = 0, step_floats = 0;
+  for_each_instances(geometries, count, [&](const Instances& instances, uint32_t) {
+    instance_count += instances.count();
+    if (!instances.is_moving()) return;
+    ++moving_count;
+    step_floats += MovingInstances::step_floats_of(instances);
+  });
+  if (step_floats != steps.size()) {
+    throw Error(KIWAMI_ERROR_INVALID_FILE, "the steps of instances have %zu numbers, expected %zu",
+                steps.size(), step_floats);
+  }
+  moving_.borrow_steps(memory, moving_count, steps);
+  uint64_t first = 0;
+  for_each_instances(geometries, count, [&](const Instances& instances, uint32_t) {
+    if (instances.is_moving()) moving_.place(instances, static_cast<uint32_t>(first));
+    first += instances.count();
+  });
+  return instance_count;
 }
 
 void SceneInstances::collect_prototypes(const AttachedGeometry* geometries, size_t count,

@@ -80,6 +80,10 @@ class SceneInstances {
                           Memory& memory);
   void fill_records(const AttachedGeometry* geometries, size_t count, Memory& memory,
                     const Parallel& parallel);
+  /// Takes the steps of those that move from a file, and says how many instances there are in all.
+  /// Throws Error(INVALID_FILE) where there are too few or too many steps.
+  uint64_t place_moving(const AttachedGeometry* geometries, size_t count,
+                        std::span<const float> steps, Memory& memory);
   void measure(Memory& memory, const Parallel& parallel);
   Array<BraidReference> make_references(Memory& memory, const Parallel& parallel) const;
   Extent extent_of(uint32_t instance) const;

@@ -23,6 +23,7 @@ void SceneParts::restore(const AttachedGeometry* geometries, size_t count, const
                          uint32_t width, Memory& memory) {
   instances_.restore(geometries, count, saved, width, memory);
   if (instances_.can_be_hit()) views_[count_++] = instances_.part();
+  if (instances_.moving().can_be_hit()) views_[count_++] = instances_.moving().part();
   for (size_t kind = 0; kind < 3; ++kind) {
     shapes_[kind].restore(geometries, count, saved.shape_trees[kind], memory);
     add(shapes_[kind].tree(), shapes_[kind].view());

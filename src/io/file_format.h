@@ -58,7 +58,10 @@ enum class SectionType : uint32_t {
   kLightUserIds = 20,     ///< uint32 by light
   kLightInstances = 21,   ///< SavedLightInstance
   kLightLinks = 22,       ///< uint32 by cluster: LightLinks
-  kLightSlots = 23        ///< uint32 by slot: WideLightTree::slot_clusters
+  kLightSlots = 23,       ///< uint32 by slot: WideLightTree::slot_clusters
+  kMovingInstances = 24,  ///< MovingInstancesRecord
+  kInstanceSteps = 25,    ///< float, the steps of instances that move, as kernels take them
+  kInstanceBoxes = 26     ///< MotionBounds by segment and node of their tree
 };
 /// Of all of them.
 constexpr uint32_t kSectionVersion = 1;
@@ -99,14 +102,15 @@ static_assert(sizeof(SceneRecord) == 32);
 enum class TreeRole : uint32_t {
   kTriangles = 0,        ///< the static triangles; always there
   kTrianglesOfMesh = 1,  ///< those of one mesh (KIWAMI_PARAMETER_TWO_LEVEL), by geometry id
-  kInstances = 2,
-  kSpheres = 3,
-  kDiscs = 4,
-  kCurves = 5,
-  kMovingTriangles = 6,
-  kMeshes = 7  ///< the trees of role kTrianglesOfMesh
+  kInstances = 2,        ///< those that rest
+  kMovingInstances = 3,
+  kSpheres = 4,
+  kDiscs = 5,
+  kCurves = 6,
+  kMovingTriangles = 7,
+  kMeshes = 8  ///< the trees of role kTrianglesOfMesh
 };
-constexpr uint32_t kTreeRoleCount = 8;
+constexpr uint32_t kTreeRoleCount = 9;
 
 struct TreeRecord {
   uint32_t role;  ///< TreeRole
@@ -137,7 +141,8 @@ enum class SavedKind : uint32_t {
   kSpheres = 3,
   kDiscs = 4,
   kCurves = 5,
-  kMovingMesh = 6
+  kMovingMesh = 6,
+  kMovingInstances = 7
 };
 
 enum : uint32_t {
@@ -146,13 +151,15 @@ enum : uint32_t {
   kHasIndices = 1u << 2,
   kHasMasks = 1u << 3,  ///< one an instance
   kHasOpacity = 1u << 4,
-  kHasOpacityIndices = 1u << 5
+  kHasOpacityIndices = 1u << 5,
+  kHasQuaternions = 1u << 6  ///< kiwami_quaternion_transform instead of matrices
 };
 
 /// A geometry of any kind. What its kind does not have is 0. Its buffers begin at multiples of 64.
 /// They are, of triangle meshes: vertices, indices, opacity maps, the map of each triangle; of
 /// moving ones: the vertices of all steps, indices; of shapes: points, normals (discs), indices
-/// (curves); of instances: matrices, indices of scenes, masks.
+/// (curves); of instances: matrices, indices of scenes, masks; of moving ones the same, with the
+/// transforms of all steps, step after step.
 struct GeometryRecord {
   uint32_t kind;  ///< SavedKind
   uint32_t flags;
@@ -179,6 +186,16 @@ struct InstancesRecord {
   double error_per_origin, error_fixed;  ///< HitError
 };
 static_assert(sizeof(InstancesRecord) == 56);
+
+/// Of those that move.
+struct MovingInstancesRecord {
+  float bounds_min[3];
+  float bounds_max[3];
+  float far_origin;
+  uint32_t reserved;
+  double error_per_origin, error_fixed;  ///< HitError
+};
+static_assert(sizeof(MovingInstancesRecord) == 48);
 
 /// A set of lights. Set 0 is the one that is saved; those that its instances show follow.
 struct LightSetRecord {

@@ -20,7 +20,7 @@ template <typename... Values>
 
 bool is_known(uint32_t type) {
   return type >= static_cast<uint32_t>(SectionType::kScene) &&
-         type <= static_cast<uint32_t>(SectionType::kLightSlots);
+         type <= static_cast<uint32_t>(SectionType::kInstanceBoxes);
 }
 
 const char* name_of_kind(uint32_t kind) {

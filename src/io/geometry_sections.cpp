@@ -16,10 +16,9 @@ template <typename... Values>
 constexpr uint64_t kMaxPrimitiveCount = 0x7FFFFFFF;
 constexpr uint64_t kMaxPointCount = 0xFFFFFFFF;
 
-/// Bytes of three floats or indices, of a point with its radius, and of a matrix.
+/// Bytes of three floats or indices, and of a point with its radius.
 constexpr size_t kTripleSize = 12;
 constexpr size_t kPointSize = 16;
-constexpr size_t kMatrixSize = 48;
 
 /// A buffer of elements that stand close together.
 struct BufferExtent {
@@ -45,10 +44,16 @@ KindTraits traits_of(SavedKind kind) {
       return {kHasIndices, kPointSize};
     case SavedKind::kMovingMesh:
       return {kHasIndices, kTripleSize};
+    case SavedKind::kMovingInstances:
+      return {kHasIndices | kHasMasks | kHasQuaternions, 0};
     case SavedKind::kNone:
       break;
   }
   return {0, 0};
+}
+
+bool is_moving(SavedKind kind) {
+  return kind == SavedKind::kMovingMesh || kind == SavedKind::kMovingInstances;
 }
 
 /// In the order in which they are saved.
@@ -80,7 +85,9 @@ void describe_buffers(const GeometryRecord& record,
       extents[1] = {count, size_if(kHasIndices, sizeof(uint32_t))};
       break;
     case SavedKind::kInstances:
-      extents[0] = {count, kMatrixSize};
+    case SavedKind::kMovingInstances:
+      extents[0] = {count * (is_moving(kind) ? record.step_count : 1),
+                    transform_bytes(transform_format_of(record))};
       extents[1] = {count, size_if(kHasIndices, sizeof(uint32_t))};
       extents[2] = {count, size_if(kHasMasks, sizeof(uint32_t))};
       break;
@@ -104,6 +111,7 @@ uint64_t most_primitives(const GeometryRecord& record) {
     case SavedKind::kDiscs:
       return record.point_count;
     case SavedKind::kInstances:
+    case SavedKind::kMovingInstances:
       return record.scene_count == 0 ? 0 : kMaxPrimitiveCount;
     case SavedKind::kNone:
       break;
@@ -113,9 +121,9 @@ uint64_t most_primitives(const GeometryRecord& record) {
 
 void check_record(uint32_t id, const GeometryRecord& record) {
   const auto kind = static_cast<SavedKind>(record.kind);
-  if (record.kind > static_cast<uint32_t>(SavedKind::kMovingMesh)) {
+  if (record.kind > static_cast<uint32_t>(SavedKind::kMovingInstances)) {
     fail("geometry %u is of kind %u, expected 0 to %u", id, record.kind,
-         static_cast<uint32_t>(SavedKind::kMovingMesh));
+         static_cast<uint32_t>(SavedKind::kMovingInstances));
   }
   const uint32_t allowed =
       kind == SavedKind::kNone ? 0 : traits_of(kind).flags | kCommitted | kEnabled;
@@ -128,13 +136,11 @@ void check_record(uint32_t id, const GeometryRecord& record) {
     fail("geometry %u has %u primitives of %llu points, expected at most %llu", id,
          record.primitive_count, ull{record.point_count}, ull{most_primitives(record)});
   }
-  const bool is_instances = kind == SavedKind::kInstances;
-  if (is_instances ? record.primitive_count == 0 : record.scene_count != 0) {
+  if (is_instances(kind) ? record.primitive_count == 0 : record.scene_count != 0) {
     fail("geometry %u of kind %u shows %u scenes %u times, expected instances alone to", id,
          record.kind, record.scene_count, record.primitive_count);
   }
-  if (kind == SavedKind::kMovingMesh &&
-      (record.step_count < 2 || record.step_count > KIWAMI_MAX_TIME_STEPS)) {
+  if (is_moving(kind) && (record.step_count < 2 || record.step_count > KIWAMI_MAX_TIME_STEPS)) {
     fail("geometry %u has %u time steps, expected 2 to %d", id, record.step_count,
          int{KIWAMI_MAX_TIME_STEPS});
   }
@@ -192,6 +198,21 @@ void add_buffer(FileWriter& writer, const void* data, size_t size, size_t stride
 
 Reference<Geometry> adopted(Geometry* geometry) { return Reference<Geometry>::adopt(geometry); }
 
+/// Of instances, of which those at rest have one step.
+Instances::SavedBuffers instance_buffers_of(const SavedGeometry& saved) {
+  Instances::SavedBuffers buffers{};
+  buffers.count = saved.record.primitive_count;
+  buffers.mask = saved.record.mask;
+  buffers.format = transform_format_of(saved.record);
+  if (is_moving(saved.kind())) {
+    buffers.time = {saved.record.time_begin, saved.record.time_end, saved.record.step_count - 1};
+  }
+  buffers.transforms = saved.buffers[0];
+  buffers.indices = saved.buffers[1];
+  buffers.masks = saved.buffers[2];
+  return buffers;
+}
+
 Reference<Geometry> make_mesh(const SavedGeometry& saved, Device& device, FileImage& image,
                               bool is_trusted) {
   Memory& memory = device.memory();
@@ -231,6 +252,12 @@ GeometryRecord record_of(const Instances& instances) {
                  (instances.has_masks() ? uint32_t{kHasMasks} : 0);
   record.primitive_count = instances.count();
   record.scene_count = instances.scene_count();
+  if (!instances.is_moving()) return record;
+  record.kind = static_cast<uint32_t>(SavedKind::kMovingInstances);
+  if (instances.format() == TransformFormat::kQuaternion) record.flags |= kHasQuaternions;
+  record.step_count = instances.time().segment_count + 1;
+  record.time_begin = instances.time().begin;
+  record.time_end = instances.time().end;
   return record;
 }
 
@@ -273,7 +300,13 @@ void add_buffers(FileWriter& writer, const Instances& instances) {
   const auto add = [&](const Instances::Elements& elements, size_t size) {
     add_buffer(writer, elements.first, size, elements.stride, instances.count());
   };
-  add(instances.transforms(), kMatrixSize);
+  writer.align();
+  for (uint32_t step = 0; step <= instances.time().segment_count; ++step) {
+    const unsigned char* const first =
+        instances.transforms().first + step * instances.step_stride();
+    writer.add(first, transform_bytes(instances.format()), instances.transforms().stride,
+               instances.count());
+  }
   add(instances.indices(), sizeof(uint32_t));
   add(instances.masks(), sizeof(uint32_t));
 }
@@ -356,14 +389,11 @@ Reference<Geometry> make_geometry(const SavedGeometry& saved, Array<Scene*> scen
       case SavedKind::kTriangleMesh:
         made = make_mesh(saved, device, image, is_trusted);
         break;
-      case SavedKind::kInstances: {
-        const Instances::SavedBuffers buffers = {saved.record.primitive_count, saved.record.mask,
-                                                 saved.buffers[1], saved.buffers[0],
-                                                 saved.buffers[2]};
-        made = adopted(
-            make_object<Instances>(memory, device, image, buffers, std::move(scenes), is_trusted));
+      case SavedKind::kInstances:
+      case SavedKind::kMovingInstances:
+        made = adopted(make_object<Instances>(memory, device, image, instance_buffers_of(saved),
+                                              std::move(scenes), is_trusted));
         break;
-      }
       case SavedKind::kSpheres:
         made = make_shapes(GeometryKind::kSpheres);
         break;

@@ -25,6 +25,14 @@ void add_buffers(FileWriter& writer, const Instances& instances);
 void add_buffers(FileWriter& writer, const Shapes& geometry);
 void add_buffers(FileWriter& writer, const MovingMesh& geometry);
 
+inline bool is_instances(SavedKind kind) {
+  return kind == SavedKind::kInstances || kind == SavedKind::kMovingInstances;
+}
+inline TransformFormat transform_format_of(const GeometryRecord& record) {
+  return (record.flags & kHasQuaternions) != 0 ? TransformFormat::kQuaternion
+                                               : TransformFormat::kMatrix;
+}
+
 /// One geometry of a file, with its buffers there.
 struct SavedGeometry {
   static constexpr size_t kBufferCount = 4;
@@ -35,6 +43,8 @@ struct SavedGeometry {
 
   SavedKind kind() const { return static_cast<SavedKind>(record.kind); }
   bool has(uint32_t flag) const { return (record.flags & flag) != 0; }
+  /// Of instances.
+  TransformFormat transform_format() const { return transform_format_of(record); }
 };
 
 /// The geometries of a scene in a file, by geometry id.

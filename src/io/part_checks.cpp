@@ -37,8 +37,7 @@ size_t first_wrong(size_t count, const Parallel& parallel, IsRight&& is_right) {
 /// False for NaN.
 bool is_error(double value) { return value >= 0.0 && value <= 0x1p480; }
 
-void check_numbers(const SavedInstances& instances) {
-  const Bounds& bounds = instances.bounds;
+void check_numbers(const Bounds& bounds, const HitError& error, float far_origin) {
   constexpr float most = 2.0f * KIWAMI_MAX_COORDINATE;
   for (int axis = 0; axis < 3 && !bounds.is_empty(); ++axis) {
     // False where one is NaN.
@@ -49,23 +48,33 @@ void check_numbers(const SavedInstances& instances) {
     fail("the instances reach from %g to %g on axis %d, expected finite numbers",
          static_cast<double>(bounds.lower[axis]), static_cast<double>(bounds.upper[axis]), axis);
   }
-  const double far_origin = static_cast<double>(instances.far_origin);
-  if (is_error(far_origin) && is_error(instances.error.per_origin) &&
-      is_error(instances.error.fixed)) {
-    return;
-  }
-  fail("the errors of instances are %g, %g and %g, expected 0 to 2^480", far_origin,
-       instances.error.per_origin, instances.error.fixed);
+  if (is_error(double{far_origin}) && is_error(error.per_origin) && is_error(error.fixed)) return;
+  fail("the errors of instances are %g, %g and %g, expected 0 to 2^480", double{far_origin},
+       error.per_origin, error.fixed);
+}
+
+/// The greatest square of an angle between unit quaternions, (pi / 2)^2, with its rounding.
+constexpr float kMaxSquaredAngle = 2.5f;
+
+bool is_step(const float* step, TransformFormat format) {
+  float rows[12], inverse[4][3];
+  matrix_of_step(step, format, rows);
+  if (!invert_for_rays(rows, inverse)) return false;
+  return format == TransformFormat::kMatrix ||
+         (step[kSquaredAngle] >= 0.0f && step[kSquaredAngle] <= kMaxSquaredAngle);
 }
 
 }  // namespace
 
-void check_instances(const SavedInstances& instances, std::span<const uint32_t> shown,
+void check_instances(const SavedInstances& instances, const InstanceContents& contents,
                      const SavedForest& forest, const Parallel& parallel) {
-  check_numbers(instances);
+  check_numbers(instances.bounds, instances.error, instances.far_origin);
+  check_numbers(instances.moving.bounds, instances.moving.error, instances.moving.far_origin);
   const auto& records = instances.records;
+  const auto& shown = contents.shown;
   size_t wrong = first_wrong(records.size(), parallel, [&](size_t i) {
-    return records[i].prototype < shown.size() && is_usable(transform_of(records[i].column));
+    return records[i].prototype < shown.size() &&
+           (contains(contents.moving, i) || is_usable(transform_of(records[i].column)));
   });
   if (wrong != records.size()) {
     fail(
@@ -76,7 +85,9 @@ void check_instances(const SavedInstances& instances, std::span<const uint32_t> 
   const auto& starts = instances.starts;
   wrong = first_wrong(starts.size(), parallel, [&](size_t i) {
     const InstanceStart& start = starts[i];
-    if (start.instance >= records.size()) return false;
+    if (start.instance >= records.size() || !contains(contents.resting, start.instance)) {
+      return false;
+    }
     if (start.tree == InstanceStart::kAllTrees) return true;
     return forest.owns(shown[records[start.instance].prototype], start.tree, start.subtree);
   });
@@ -86,7 +97,19 @@ void check_instances(const SavedInstances& instances, std::span<const uint32_t> 
   }
 }
 
-void check_motion_bounds(std::span<const float> bounds, const Parallel& parallel) {
+void check_instance_steps(std::span<const float> steps, TransformFormat format,
+                          const Parallel& parallel) {
+  const size_t size = step_size_of(format), count = steps.size() / size;
+  const size_t wrong = first_wrong(
+      count, parallel, [&](size_t i) { return is_step(steps.data() + i * size, format); });
+  if (wrong == count) return;
+  fail(
+      "step %zu of an array of instances is singular or not finite, expected one that rays can be "
+      "carried by",
+      wrong);
+}
+
+void check_moving_boxes(std::span<const float> bounds, const Parallel& parallel) {
   const size_t wrong = first_wrong(bounds.size(), parallel, [&](size_t i) {
     // Those of unused slots are the greatest. False where one is NaN.
     return std::fabs(bounds[i]) <= 0x1p100f;

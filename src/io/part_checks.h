@@ -12,13 +12,23 @@
 
 namespace kiwami::file {
 
-/// Checks that every instance is of one of the shown scenes (their numbers in the file) and can be
-/// entered, and that re-braided ones start at references of their trees, which have been checked.
-/// Throws Error(INVALID_FILE).
-void check_instances(const SavedInstances& instances, std::span<const uint32_t> shown,
+/// What the committed instances of a scene are.
+struct InstanceContents {
+  std::span<const uint32_t> shown;  ///< the scenes that they show, by their numbers in the file
+  std::span<const IdRange> resting, moving;  ///< their own numbers
+};
+
+/// Checks that every instance is of one of the shown scenes and, where it rests, can be entered,
+/// and that re-braided ones, which rest, start at references of their trees, which have been
+/// checked. Throws Error(INVALID_FILE).
+void check_instances(const SavedInstances& instances, const InstanceContents& contents,
                      const SavedForest& forest, const Parallel& parallel);
 
-/// Checks that boxes of moving triangles are finite. Throws Error(INVALID_FILE).
-void check_motion_bounds(std::span<const float> bounds, const Parallel& parallel);
+/// Checks that instances that move can be entered at their steps. Throws Error(INVALID_FILE).
+void check_instance_steps(std::span<const float> steps, TransformFormat format,
+                          const Parallel& parallel);
+
+/// Checks that boxes of what moves are finite. Throws Error(INVALID_FILE).
+void check_moving_boxes(std::span<const float> bounds, const Parallel& parallel);
 
 }  // namespace kiwami::file

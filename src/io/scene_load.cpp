@@ -22,6 +22,12 @@ template <typename... Values>
 
 Vec3f vector_of(const float (&from)[3]) { return {from[0], from[1], from[2]}; }
 
+template <typename Record>
+Bounds bounds_of(const Record& record) {
+  const Bounds bounds = {vector_of(record.bounds_min), vector_of(record.bounds_max)};
+  return bounds.is_empty() ? Bounds::empty() : bounds;
+}
+
 void restore_parameters(std::span<const ParameterRecord> records, SceneParameters& parameters) {
   uint32_t optimizers[KIWAMI_MAX_OPTIMIZERS];
   size_t optimizer_count = 0;
@@ -44,7 +50,6 @@ struct Counts {
   uint64_t triangles = 0;
   uint64_t shapes[3] = {};
   uint64_t moving_triangles = 0;
-  uint64_t instances = 0;
 
   void add(const SavedGeometry& geometry) {
     if (!geometry.has(kCommitted)) return;
@@ -52,9 +57,6 @@ struct Counts {
     switch (geometry.kind()) {
       case SavedKind::kTriangleMesh:
         triangles += count;
-        break;
-      case SavedKind::kInstances:
-        instances += count;
         break;
       case SavedKind::kSpheres:
       case SavedKind::kDiscs:
@@ -64,6 +66,8 @@ struct Counts {
       case SavedKind::kMovingMesh:
         moving_triangles += count;
         break;
+      case SavedKind::kInstances:
+      case SavedKind::kMovingInstances:
       case SavedKind::kNone:
         break;
     }
@@ -198,6 +202,9 @@ class SceneLoader {
         case TreeRole::kInstances:
           parts.instance_tree = &tree;
           break;
+        case TreeRole::kMovingInstances:
+          parts.moving_instance_tree = &tree;
+          break;
         case TreeRole::kSpheres:
         case TreeRole::kDiscs:
         case TreeRole::kCurves:
@@ -219,6 +226,7 @@ class SceneLoader {
     }
     parts.motion_bounds = reader_.array<unsigned char>(SectionType::kMotionBounds, number);
     if (parts.instance_tree) parts.instances = instances_of(number);
+    parts.instances.moving = moving_instances_of(number);
     return parts;
   }
 
@@ -229,16 +237,29 @@ class SceneLoader {
       rebraiding.set(KIWAMI_PARAMETER_REBRAID, record.rebraid_mode);
       rebraiding.set(KIWAMI_PARAMETER_REBRAID_BUDGET, record.rebraid_budget);
     });
-    Bounds bounds = {vector_of(record.bounds_min), vector_of(record.bounds_max)};
-    if (bounds.is_empty()) bounds = Bounds::empty();
     return {reader_.array<InstanceRecord>(SectionType::kInstanceRecords, number),
             reader_.array<uint32_t>(SectionType::kInstanceMasks, number),
             reader_.array<InstanceStart>(SectionType::kInstanceStarts, number),
-            bounds,
+            bounds_of(record),
             {record.error_per_origin, record.error_fixed},
             record.far_origin,
             record.rebraid_mode,
-            record.rebraid_budget};
+            record.rebraid_budget,
+            {}};
+  }
+
+  /// Of nothing where none moves.
+  SavedMovingInstances moving_instances_of(uint32_t number) const {
+    const bool is_there =
+        !reader_.array<MovingInstancesRecord>(SectionType::kMovingInstances, number).empty();
+    if (!is_there) return {{}, {}, Bounds::empty(), {}, 0.0f};
+    const auto record =
+        reader_.record<MovingInstancesRecord>(SectionType::kMovingInstances, number);
+    return {reader_.array<float>(SectionType::kInstanceSteps, number),
+            reader_.array<unsigned char>(SectionType::kInstanceBoxes, number),
+            bounds_of(record),
+            {record.error_per_origin, record.error_fixed},
+            record.far_origin};
   }
 
   void check_contents(uint32_t number, const SavedGeometries& geometries, const SavedParts& parts,
@@ -254,18 +275,46 @@ class SceneLoader {
     }
     if (parts.motion_tree) {
       forest.check(*parts.motion_tree, counts.moving_triangles, parallel);
-      check_motion_bounds(reader_.array<float>(SectionType::kMotionBounds, number), parallel);
+      check_moving_boxes(reader_.array<float>(SectionType::kMotionBounds, number), parallel);
     }
-    if (!parts.instance_tree) return;
-    const bool is_rebraided = parts.instances.rebraid_mode != KIWAMI_REBRAID_OFF;
-    forest.check(*parts.instance_tree,
-                 is_rebraided ? parts.instances.starts.size() : counts.instances, parallel);
-    GrowingArray<uint32_t> shown(device_.memory());
+    if (parts.instance_tree) check_instances_of(number, geometries, parts, forest);
+  }
+
+  void check_instances_of(uint32_t number, const SavedGeometries& geometries,
+                          const SavedParts& parts, SavedForest& forest) const {
+    const Parallel& parallel = device_.parallel();
+    Memory& memory = device_.memory();
+    GrowingArray<uint32_t> shown(memory);
+    GrowingArray<IdRange> resting(memory), moving(memory);
+    std::span<const float> steps = parts.instances.moving.steps;
+    uint64_t next = 0;
     geometries.for_each([&](uint32_t, const SavedGeometry& saved) {
       if (!saved.has(kCommitted)) return;
       for (const uint32_t scene : saved.shown) shown.push_back(scene);
+      const IdRange range = {next, saved.record.primitive_count};
+      if (saved.kind() == SavedKind::kInstances) resting.push_back(range);
+      if (saved.kind() == SavedKind::kMovingInstances) {
+        moving.push_back(range);
+        const TransformFormat format = saved.transform_format();
+        const size_t size =
+            size_t{saved.record.primitive_count} * saved.record.step_count * step_size_of(format);
+        const size_t taken = std::min(size, steps.size());
+        check_instance_steps(steps.first(taken), format, parallel);
+        steps = steps.subspan(taken);
+      }
+      if (is_instances(saved.kind())) next += range.count;
     });
-    check_instances(parts.instances, {shown.data(), shown.size()}, forest, parallel);
+    const InstanceContents contents = {{shown.data(), shown.size()},
+                                       {resting.data(), resting.size()},
+                                       {moving.data(), moving.size()}};
+    const IdRange starts = {0, parts.instances.starts.size()};
+    const bool is_rebraided = parts.instances.rebraid_mode != KIWAMI_REBRAID_OFF;
+    forest.check(*parts.instance_tree, is_rebraided ? std::span(&starts, 1) : contents.resting,
+                 parallel);
+    check_instances(parts.instances, contents, forest, parallel);
+    if (!parts.moving_instance_tree) return;
+    forest.check(*parts.moving_instance_tree, contents.moving, parallel);
+    check_moving_boxes(reader_.array<float>(SectionType::kInstanceBoxes, number), parallel);
   }
 
   /// Each tree holds triangles of its mesh alone, and the one over them as many meshes.

@@ -30,6 +30,16 @@ InstancesRecord record_of_instances(const SavedInstances& instances) {
   return record;
 }
 
+MovingInstancesRecord record_of_moving(const SavedMovingInstances& moving) {
+  MovingInstancesRecord record{};
+  copy(moving.bounds.lower, record.bounds_min);
+  copy(moving.bounds.upper, record.bounds_max);
+  record.far_origin = moving.far_origin;
+  record.error_per_origin = moving.error.per_origin;
+  record.error_fixed = moving.error.fixed;
+  return record;
+}
+
 /// The quality first, since it sets others.
 Array<ParameterRecord> records_of(const SceneParameters& parameters, Memory& memory) {
   GrowingArray<ParameterRecord> records(memory);
@@ -63,6 +73,7 @@ void for_each_tree(const CommittedScene& scene, Visit&& visit) {
           mesh.tree());
   }
   visit_part(TreeRole::kInstances, parts.instances().part_tree());
+  visit_part(TreeRole::kMovingInstances, parts.instances().moving().tree());
   visit_part(TreeRole::kSpheres, parts.shapes(ShapeKind::kSphere).tree());
   visit_part(TreeRole::kDiscs, parts.shapes(ShapeKind::kDisc).tree());
   visit_part(TreeRole::kCurves, parts.shapes(ShapeKind::kCurve).tree());
@@ -112,6 +123,7 @@ class SceneTables {
   const CommittedScene& committed_;
   SceneRecord scene_{};
   InstancesRecord instances_;
+  MovingInstancesRecord moving_instances_;
   Array<ParameterRecord> parameters_;
   Array<GeometryToSave> geometries_;
   Array<GeometryRecord> records_;
@@ -122,6 +134,7 @@ class SceneTables {
 SceneTables::SceneTables(const SceneToSave& saved, const SceneWalk& walk, Memory& memory)
     : committed_(*saved.committed),
       instances_(record_of_instances(committed_.parts().instances().saved())),
+      moving_instances_(record_of_moving(committed_.parts().instances().moving().saved())),
       parameters_(records_of(saved.scene->parameters(), memory)),
       geometries_(geometries_of(saved, memory)),
       records_(memory, geometries_.size()) {
@@ -160,6 +173,12 @@ void SceneTables::add_to(FileWriter& writer, uint32_t number) const {
     writer.add_section(SectionType::kInstanceRecords, number, saved.records);
     writer.add_section(SectionType::kInstanceMasks, number, saved.masks);
     writer.add_section(SectionType::kInstanceStarts, number, saved.starts);
+    if (!instances.moving().empty()) {
+      writer.begin_section(SectionType::kMovingInstances, number);
+      writer.add(&moving_instances_, 1);
+      writer.add_section(SectionType::kInstanceSteps, number, saved.moving.steps);
+      writer.add_section(SectionType::kInstanceBoxes, number, saved.moving.boxes);
+    }
   }
   writer.begin_section(SectionType::kBuffers, number);
   for_each_geometry(committed_, geometries_,

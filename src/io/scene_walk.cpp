@@ -12,13 +12,6 @@ namespace kiwami::file {
 namespace {
 
 void check_kind(const Geometry& geometry, size_t geometry_id) {
-  if (geometry.kind() == GeometryKind::kInstances &&
-      static_cast<const Instances&>(geometry).is_moving()) {
-    throw Error(KIWAMI_ERROR_INVALID_STATE,
-                "geometry %zu is instances that move, expected none in a scene that is saved, nor "
-                "in one that it shows",
-                geometry_id);
-  }
   if (geometry.kind() != GeometryKind::kUser) return;
   throw Error(KIWAMI_ERROR_INVALID_STATE,
               "geometry %zu is a user geometry, expected none in a scene that is saved, nor in one "

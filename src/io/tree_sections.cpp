@@ -17,8 +17,8 @@ template <typename... Values>
   throw Error(KIWAMI_ERROR_INVALID_FILE, format, values...);
 }
 
-/// Boxes of instances end at twice KIWAMI_MAX_COORDINATE.
-constexpr float kMaxPartCoordinate = 2.0f * KIWAMI_MAX_COORDINATE;
+/// Boxes of instances end at twice KIWAMI_MAX_COORDINATE, with some padding where they move.
+constexpr float kMaxPartCoordinate = 4.0f * KIWAMI_MAX_COORDINATE;
 
 void copy(const Vec3f& from, float (&to)[3]) {
   for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
@@ -174,11 +174,12 @@ void SavedForest::read_scene(const FileReader& reader, uint32_t scene) {
   }
 }
 
-void SavedForest::check(const SavedTree& tree, uint64_t id_count, const Parallel& parallel) {
+void SavedForest::check(const SavedTree& tree, std::span<const IdRange> ids,
+                        const Parallel& parallel) {
   const float most = holds_triangles(role(tree)) ? KIWAMI_MAX_COORDINATE : kMaxPartCoordinate;
   check_bounds(tree, most);
   uint16_t* const owned = owned_.empty() ? nullptr : &owned_[first_owned_[index_of(tree)]];
-  check_references(tree.tree(), {id_count, most, owned}, memory_, parallel);
+  check_references(tree.tree(), {ids, most, owned}, memory_, parallel);
 }
 
 /// The number counts the trees that kernels see: that of the triangles, and parts that are not

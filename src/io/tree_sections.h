@@ -6,6 +6,7 @@
 
 #include "core/saved_scene.h"
 #include "io/file_reader.h"
+#include "wide/check_references.h"
 #include "wide/wide_tree.h"
 
 namespace kiwami::file {
@@ -32,8 +33,14 @@ class SavedForest {
 
   /// Before the checks, where instances start in the midst of trees: owns is to be asked.
   void keep_owned();
-  /// Checks what is in a tree that nobody vouches for: see check_references.
-  void check(const SavedTree& tree, uint64_t id_count, const Parallel& parallel);
+  /// Checks what is in a tree that nobody vouches for, whose ids lie in the ranges: see
+  /// check_references.
+  void check(const SavedTree& tree, std::span<const IdRange> ids, const Parallel& parallel);
+  /// The same of ids below a count.
+  void check(const SavedTree& tree, uint64_t id_count, const Parallel& parallel) {
+    const IdRange ids = {0, id_count};
+    check(tree, {&ids, 1}, parallel);
+  }
   /// After the checks of a scene: whether rays can start at a reference to a part of it. tree is as
   /// in InstanceStart.
   bool owns(uint32_t scene, uint32_t tree, ChildReference reference) const;

@@ -139,9 +139,12 @@ class ReferenceChecker {
     const uint32_t* const ids = tree_.leaf_ids(index);
     for (uint32_t mask = owned_lanes_[index]; mask != 0; mask &= mask - 1) {
       const int lane = std::countr_zero(mask);
-      if (ids[lane] >= limits_.id_count) {
-        fail("lane %d of leaf block %zu has id %u, expected less than %llu", lane, index, ids[lane],
-             ull{limits_.id_count});
+      if (!contains(limits_.ids, ids[lane])) {
+        const IdRange last = limits_.ids.empty() ? IdRange{0, 0} : limits_.ids.back();
+        fail(
+            "lane %d of leaf block %zu has id %u, expected one of what the tree is over, less than "
+            "%llu",
+            lane, index, ids[lane], ull{last.first + last.count});
       }
       if (tree_.leaf_layout == LeafLayout::kTriangles) check_vertices(index, lane);
     }
@@ -174,6 +177,13 @@ class ReferenceChecker {
 };
 
 }  // namespace
+
+bool contains(std::span<const IdRange> ranges, uint64_t id) {
+  const auto next =
+      std::upper_bound(ranges.begin(), ranges.end(), id,
+                       [](uint64_t value, const IdRange& range) { return value < range.first; });
+  return next != ranges.begin() && id - (next - 1)->first < (next - 1)->count;
+}
 
 void check_references(const WideTree& tree, const ReferenceLimits& limits, Memory& memory,
                       const Parallel& parallel) {

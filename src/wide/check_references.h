@@ -7,9 +7,17 @@
 
 namespace kiwami {
 
+struct IdRange {
+  uint64_t first;
+  uint64_t count;
+};
+
+/// Whether an id lies in one of some ranges, which rise and do not overlap.
+bool contains(std::span<const IdRange> ranges, uint64_t id);
+
 struct ReferenceLimits {
-  uint64_t id_count;          ///< ids are below
-  float greatest_coordinate;  ///< of boxes and vertices
+  std::span<const IdRange> ids;  ///< what ids lie in, rising
+  float greatest_coordinate;     ///< of boxes and vertices
   /// Receives the slots that each node, then the lanes that each leaf block has in use; nullptr:
   /// nobody asks.
   uint16_t* owned = nullptr;

@@ -15,9 +15,9 @@ namespace {
 
 using namespace kiwami_tests;
 
-constexpr uint32_t kKinds[] = {kRichInstances, kRichShapes,   kRichMotion,
-                               kRichMicromaps, kRichTwoLevel, kRichInstances | kRichRebraided,
-                               kRichDisabled};
+constexpr uint32_t kKinds[] = {kRichInstances, kRichShapes,         kRichMotion,
+                               kRichMicromaps, kRichTwoLevel,       kRichInstances | kRichRebraided,
+                               kRichDisabled,  kRichMovingInstances};
 /// Every bit of a byte in the long form; in the short form bits that lie so far apart.
 uint64_t bit_step(uint64_t short_form) { return std::max<uint64_t>(1, short_form / ray_budget(1)); }
 

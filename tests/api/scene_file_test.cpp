@@ -18,6 +18,8 @@ constexpr uint32_t kKinds[] = {kRichInstances,
                                kRichMicromaps,
                                kRichTwoLevel,
                                kRichDisabled,
+                               kRichMovingInstances,
+                               kRichInstances | kRichMovingInstances | kRichRebraided,
                                kRichInstances | kRichRebraided | kRichShapes | kRichMotion,
                                kRichInstances | kRichTwoLevel | kRichMotion,
                                kRichAll};
@@ -107,19 +109,25 @@ TEST(RichSceneFile, ComesBackTheSame) {
 TEST(RichSceneFile, HoldsWhatIsMet) {
   const Device device = make_device();
   const Answers answers(make_rich_scene(device, kRichAll & ~kRichDisabled, 100, 8));
-  uint32_t met[2][8] = {}, deepest = 0;
+  // Turning, resting and moving instances of the root.
+  constexpr uint32_t kInstanceCount = 2 + 5 + 3;
+  uint32_t met[2][8] = {}, by_instance[kInstanceCount] = {}, deepest = 0;
   for (size_t i = 0; i < answers.closest.size(); ++i) {
     const kiwami_hit& hit = answers.closest[i];
     if (hit.primitive_id == KIWAMI_INVALID_ID) continue;
     const bool is_inside = hit.instance_id != KIWAMI_INVALID_ID;
     ASSERT_LT(hit.geometry_id, 8u);
     ++met[is_inside ? 1 : 0][hit.geometry_id];
-    if (is_inside && answers.paths[8 * i + 1] != KIWAMI_INVALID_ID) ++deepest;
+    if (!is_inside) continue;
+    ASSERT_LT(answers.paths[8 * i], kInstanceCount);
+    ++by_instance[answers.paths[8 * i]];
+    if (answers.paths[8 * i + 1] != KIWAMI_INVALID_ID) ++deepest;
   }
   // Two meshes, spheres, discs, two of curves, two moving meshes.
   for (int place = 0; place < 2; ++place) {
     for (int kind = 0; kind < 8; ++kind) EXPECT_GT(met[place][kind], 0u) << place << " " << kind;
   }
+  for (uint32_t i = 0; i < kInstanceCount; ++i) EXPECT_GT(by_instance[i], 0u) << i;
   EXPECT_GT(deepest, 0u);
 }
 

@@ -153,6 +153,60 @@ class Maker {
            }).get());
   }
 
+  /// count instances of the scenes in turn, each going its own way within the cube.
+  void add_moving_instances(const std::vector<kiwami_scene*>& scenes, uint32_t count) {
+    constexpr uint32_t kStepCount = 3;
+    std::vector<float> transforms;
+    std::vector<uint32_t> indices, masks;
+    for (uint32_t i = 0; i < count * kStepCount; ++i) {
+      const float scale = 0.3f + 0.2f * random_.unit();
+      for (uint32_t row = 0; row < 3; ++row) {
+        for (uint32_t column = 0; column < 3; ++column) {
+          transforms.push_back(row == column ? scale : 0.1f * random_.symmetric());
+        }
+        transforms.push_back(0.5f * random_.symmetric());
+      }
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+      indices.push_back(i % static_cast<uint32_t>(scenes.size()));
+      masks.push_back(i % 3 == 2 ? 6u : ~0u);
+    }
+    kiwami_moving_instances_desc desc = moving_desc(scenes);
+    desc.scene_indices = scenes.size() > 1 ? indices.data() : nullptr;
+    desc.transforms = transforms.data();
+    desc.step_count = kStepCount;
+    desc.count = count;
+    desc.masks = masks.data();
+    attach_moving(desc);
+  }
+
+  /// The same of the first scene, turning, for a part of the time.
+  void add_turning_instances(const std::vector<kiwami_scene*>& scenes, uint32_t count) {
+    std::vector<kiwami_quaternion_transform> transforms(size_t{2} * count);
+    for (kiwami_quaternion_transform& transform : transforms) {
+      const float scale = 0.3f + 0.2f * random_.unit();
+      transform = {};
+      transform.scale_x = transform.scale_y = transform.scale_z = scale;
+      transform.skew_xy = 0.1f * random_.symmetric();
+      transform.shift_z = 0.1f * random_.symmetric();
+      transform.quaternion_r = 1.0f + random_.unit();
+      transform.quaternion_i = random_.symmetric();
+      transform.quaternion_j = random_.symmetric();
+      transform.quaternion_k = random_.symmetric();
+      transform.translation_x = 0.5f * random_.symmetric();
+      transform.translation_y = 0.5f * random_.symmetric();
+    }
+    kiwami_moving_instances_desc desc = moving_desc(scenes);
+    desc.format = KIWAMI_TRANSFORM_QUATERNION;
+    desc.transforms = transforms.data();
+    desc.step_count = 2;
+    desc.count = count;
+    desc.time_begin = 0.25f;
+    desc.time_end = 0.75f;
+    desc.mask = 7;
+    attach_moving(desc);
+  }
+
   /// All that the scene is to hold beside instances.
   void add_leaves() {
     add_mesh(true, ~0u);
@@ -181,6 +235,20 @@ class Maker {
   }
 
  private:
+  static kiwami_moving_instances_desc moving_desc(const std::vector<kiwami_scene*>& scenes) {
+    kiwami_moving_instances_desc desc;
+    must(kiwami_moving_instances_desc_init(&desc, sizeof desc));
+    desc.scenes = scenes.data();
+    desc.scene_count = scenes.size();
+    return desc;
+  }
+
+  void attach_moving(const kiwami_moving_instances_desc& desc) {
+    attach(made([&](auto geometry) {
+             return kiwami_moving_instances_create(device_, &desc, geometry);
+           }).get());
+  }
+
   void set(uint32_t parameter, double value) {
     must(kiwami_scene_set_parameter(scene_.get(), parameter, value));
   }
@@ -245,19 +313,27 @@ class Maker {
 SceneHandle make(kiwami_device* device, const RichScene& what) {
   Maker root(device, what, 1);
   SceneHandle inner, outer;
-  if (root.has(kRichInstances)) {
+  if (root.has(kRichInstances | kRichMovingInstances)) {
     Maker child(device, what, 2);
     child.add_leaves();
     inner = child.commit();
+  }
+  if (root.has(kRichInstances)) {
     Maker parent(device, what, 3);
     parent.add_mesh(true, ~0u);
     parent.add_instances({inner.get()}, 2, false);
+    if (root.has(kRichMovingInstances)) parent.add_turning_instances({inner.get()}, 1);
     outer = parent.commit();
   }
   root.add_leaves();
+  if (root.has(kRichMovingInstances)) root.add_turning_instances({inner.get()}, 2);
   if (root.has(kRichInstances)) {
     root.add_instances({outer.get(), inner.get(), inner.get()}, 4, true);
     root.add_instances({inner.get()}, 1, false);
+  }
+  if (root.has(kRichMovingInstances)) {
+    kiwami_scene* const other = outer ? outer.get() : inner.get();
+    root.add_moving_instances({inner.get(), other}, 3);
   }
   return root.commit();
 }

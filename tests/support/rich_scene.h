@@ -20,7 +20,9 @@ enum : uint32_t {
   kRichRebraided = 1u << 5,
   /// Geometries that the commit did not see, and one that the next will not.
   kRichDisabled = 1u << 6,
-  kRichAll = (1u << 7) - 1
+  /// Arrays of instances that move, by matrices with masks and by quaternions.
+  kRichMovingInstances = 1u << 7,
+  kRichAll = (1u << 8) - 1
 };
 
 struct RichScene {
