@@ -34,7 +34,8 @@ struct Answers {
   std::vector<uint64_t> offsets;
 
   explicit Answers(const Scene& scene) {
-    const std::vector<kiwami_ray> rays = random_rays(1500, 7);
+    std::vector<kiwami_ray> rays = random_rays(1500, 7);
+    for (size_t i = 0; i < rays.size(); i += 2) rays[i].mask = 1u << (i / 2) % 8;
     const size_t count = rays.size();
     closest.resize(count);
     paths.resize(count * KIWAMI_MAX_INSTANCE_DEPTH);
