@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Kiwami: committed scenes and trees as files: saved, loaded by copy, or mapped without one.
+ * Kiwami: committed scenes, trees and lights as files: saved, loaded by copy, or mapped without a
+ * copy.
  *
  * A file holds a directory of typed, versioned sections, each with its checksum; numbers are little
  * endian, references are offsets, so that it serves at any address. docs/files.md has the layout.
@@ -13,6 +14,7 @@
 #define KIWAMI_IO_H
 
 #include "bvh.h"
+#include "light.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -62,13 +64,14 @@ typedef struct kiwami_load_desc {
   void* read_user;
   const void* data;   /* size bytes */
   uint64_t size;      /* 0 without data */
-  uint32_t bvh_width; /* 4, 8 or 16: a scene whose tree is of another width is built anew from its
-                       * geometries, with its parameters; 0: whatever is there. Not for trees. */
+  uint32_t bvh_width; /* 4, 8 or 16: a scene whose trees are of another width is built anew from
+                       * its geometries, with its parameters, and so is each that it shows; 0:
+                       * whatever is there. For scenes alone. */
   uint32_t reserved;  /* 0 */
 } kiwami_load_desc;
 
 /* What a file holds. The numbers are pinned. */
-enum { KIWAMI_FILE_SCENE = 1, KIWAMI_FILE_BVH = 2 };
+enum { KIWAMI_FILE_SCENE = 1, KIWAMI_FILE_BVH = 2, KIWAMI_FILE_LIGHTS = 3 };
 
 /* How a file fits this library and a device. */
 enum {
@@ -90,11 +93,12 @@ typedef struct kiwami_file_info {
   uint32_t section_count;
   uint32_t reserved; /* 0 */
   uint64_t file_bytes;
-  uint64_t triangle_count; /* of a scene, that can be hit; of a tree, entries of primitives */
+  uint64_t triangle_count; /* of a scene, that can be hit, without those of instances; of a tree,
+                            * entries of primitives; of a set of lights, its lights */
   uint64_t node_count;
 } kiwami_file_info;
 
-#define KIWAMI_FILE_FORMAT_VERSION 1
+#define KIWAMI_FILE_FORMAT_VERSION 2
 
 /* Fill a struct with its defaults: nowhere to save to, nothing to load, everything checked.
  *   size      sizeof the struct as the caller knows it
@@ -103,19 +107,25 @@ typedef struct kiwami_file_info {
 KIWAMI_API kiwami_result kiwami_save_desc_init(kiwami_save_desc* desc, size_t size);
 KIWAMI_API kiwami_result kiwami_load_desc_init(kiwami_load_desc* desc, size_t size);
 
-/* Saves what the last commit made of a scene: the tree, the geometries' buffers as they are now,
- * and the parameters of the next commit. Equal scenes give equal bytes. Geometries without
- * triangles and representative rays are not saved; the geometries keep their numbers.
+/* Saves what the last commit made of a scene: all trees, the geometries of every kind with their
+ * masks and numbers, opacity micromaps, and the scenes that instances show, as they were committed
+ * then, each once however often it is shown. Buffers that are shared with the caller are saved as
+ * they are now, but the transforms of instances also as they were. What is attached beside,
+ * disabled or since the commit, comes along without having been committed; so do the parameters of
+ * the next commit. Equal scenes give equal bytes. Representative rays are not saved.
  *   bytes     receives the size of the file, also where it did not fit into data. May be NULL.
  *   errors    INVALID_ARGUMENT: scene or desc is NULL, a field of desc, data that is too small;
- *             INVALID_STATE: never committed, or a scene that holds more than static triangle
- *             meshes; IO: a file could not be written; CALLBACK: write failed; OUT_OF_MEMORY
+ *             INVALID_STATE: never committed, the scene or one that it shows; a user geometry,
+ *             which the sentence names: files cannot hold functions; TOO_LARGE: attached geometries
+ *             make paths of more than KIWAMI_MAX_INSTANCE_DEPTH instances; IO: a file could not be
+ *             written; CALLBACK: write failed; OUT_OF_MEMORY
  * [any thread after commit]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_save(const kiwami_scene* scene, const kiwami_save_desc* desc,
                                            uint64_t* bytes);
 
 /* Makes a scene of a file. It is a committed scene like others: it can be traced, looked at, saved,
- * changed and committed again, its geometries being meshes of the device that nobody else holds.
+ * changed and committed again, its geometries and the scenes that they show being objects of the
+ * device that nobody else holds. No tree is built: all lie where the file is.
  *   scene     receives the handle, with one reference, or NULL on error
  *   errors    INVALID_ARGUMENT: NULL, a field of desc; IO: a file could not be read; INVALID_FILE:
  *             no file of a scene, one of a newer library, or a damaged one (the sentence says
@@ -136,6 +146,24 @@ KIWAMI_API kiwami_result kiwami_bvh_save(const kiwami_bvh* bvh, const kiwami_sav
  * [any thread]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_bvh_load(kiwami_device* device, const kiwami_load_desc* desc,
                                          kiwami_bvh** bvh);
+
+/* Saves what the last commit or refit made of a set of lights: the lights, the instances with the
+ * trees that they show, each once however often it is shown, and the shape of the tree. Changes
+ * since are not saved. Equal sets give equal bytes.
+ *   errors    as kiwami_scene_save; INVALID_STATE: never committed
+ * [any thread after commit]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_light_tree_save(const kiwami_light_tree* tree,
+                                                const kiwami_save_desc* desc, uint64_t* bytes);
+
+/* Makes a set of lights of a file: a committed one like others, to be sampled, changed, refitted
+ * and committed, with choices and probabilities equal to the bit. The tree is not built but written
+ * anew in its shape, in linear time, whatever the flags are: nothing of the file is needed after
+ * the call.
+ *   tree      receives the handle, with one reference, or NULL on error
+ *   errors    as kiwami_scene_load
+ * [any thread]; since 0.1 */
+KIWAMI_API kiwami_result kiwami_light_tree_load(kiwami_device* device, const kiwami_load_desc* desc,
+                                                kiwami_light_tree** tree);
 
 /* Says what a file is, and whether it fits the device, from its beginning alone.
  *   desc      path or data; flags have no effect

@@ -3,6 +3,7 @@
 
 #include "api/check.h"
 #include "io/bvh_file.h"
+#include "io/light_file.h"
 #include "io/scene_file.h"
 #include "math/float_environment.h"
 
@@ -72,6 +73,12 @@ kiwami_load_desc read_load_desc(const kiwami_load_desc* given) {
   return desc;
 }
 
+void check_no_width(const kiwami_load_desc& desc, const char* what) {
+  if (desc.bvh_width == 0) return;
+  throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "desc.bvh_width is %u, expected 0 for %s",
+              desc.bvh_width, what);
+}
+
 }  // namespace
 
 extern "C" {
@@ -122,12 +129,37 @@ kiwami_result kiwami_bvh_load(kiwami_device* device, const kiwami_load_desc* des
     check_not_null(device, "device");
     check_not_null(bvh, "bvh");
     const kiwami_load_desc checked = read_load_desc(desc);
-    if (checked.bvh_width != 0) {
-      throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "desc.bvh_width is %u, expected 0 for a tree",
-                  checked.bvh_width);
-    }
+    check_no_width(checked, "a tree");
     const DefaultFloatEnvironment environment;
     *bvh = reinterpret_cast<kiwami_bvh*>(load_bvh(*object_of(device), checked));
+  });
+}
+
+kiwami_result kiwami_light_tree_save(const kiwami_light_tree* tree, const kiwami_save_desc* desc,
+                                     uint64_t* bytes) {
+  const auto* const object = reinterpret_cast<const LightTree*>(tree);
+  return guarded(object ? &object->device() : nullptr, [&] {
+    check_not_null(tree, "tree");
+    if (!object->committed()) {
+      throw Error(
+          KIWAMI_ERROR_INVALID_STATE,
+          "tree was never committed, expected a successful kiwami_light_tree_commit before");
+    }
+    const kiwami_save_desc checked = read_save_desc(desc);
+    deliver_size(save_lights(*object, *object->committed(), checked), checked, bytes);
+  });
+}
+
+kiwami_result kiwami_light_tree_load(kiwami_device* device, const kiwami_load_desc* desc,
+                                     kiwami_light_tree** tree) {
+  if (tree) *tree = nullptr;
+  return guarded(object_of(device), [&] {
+    check_not_null(device, "device");
+    check_not_null(tree, "tree");
+    const kiwami_load_desc checked = read_load_desc(desc);
+    check_no_width(checked, "a set of lights");
+    const DefaultFloatEnvironment environment;
+    *tree = reinterpret_cast<kiwami_light_tree*>(load_lights(*object_of(device), checked));
   });
 }
 

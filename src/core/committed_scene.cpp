@@ -40,32 +40,38 @@ double ratio(uint64_t part, uint64_t whole) {
 CommittedScene::GeometryReferences::GeometryReferences(Memory& memory,
                                                        const AttachedGeometry* geometries,
                                                        size_t count)
-    : geometries_(memory, count), buffers_(memory, count) {
+    : geometries_(memory, count), by_address_(memory, count), buffers_(memory, count) {
   for (size_t i = 0; i < count; ++i) {
-    geometries_[i] = geometries[i].geometry;
-    geometries_[i]->retain();
-    buffers_[i] = geometries_[i]->replaceable_buffer();
+    Geometry& geometry = *geometries[i].geometry;
+    geometries_[i] = {&geometry, geometries[i].geometry_id, geometry.mask()};
+    geometry.retain();
+    by_address_[i] = static_cast<uint32_t>(i);
+    buffers_[i] = geometry.replaceable_buffer();
     if (buffers_[i]) buffers_[i]->retain();
   }
-  std::sort(geometries_.begin(), geometries_.end(), std::less<Geometry*>());
+  std::sort(by_address_.begin(), by_address_.end(), [this](uint32_t a, uint32_t b) {
+    return std::less<Geometry*>()(geometries_[a].geometry, geometries_[b].geometry);
+  });
 }
 
 CommittedScene::GeometryReferences::~GeometryReferences() {
   for (BufferCopy* buffer : buffers_) {
     if (buffer) buffer->release();
   }
-  for (Geometry* geometry : geometries_) geometry->release();
+  for (const CommittedGeometry& held : geometries_) held.geometry->release();
 }
 
 void CommittedScene::GeometryReferences::swap(GeometryReferences& other) noexcept {
   std::swap(geometries_, other.geometries_);
+  std::swap(by_address_, other.by_address_);
   std::swap(buffers_, other.buffers_);
 }
 
 size_t CommittedScene::GeometryReferences::copied_bytes() const {
   size_t bytes = 0;
   const Geometry* previous = nullptr;
-  for (const Geometry* geometry : geometries_) {
+  for (const uint32_t i : by_address_) {
+    const Geometry* const geometry = geometries_[i].geometry;
     if (geometry != previous) bytes += geometry->copied_bytes();
     previous = geometry;
   }
@@ -123,19 +129,30 @@ CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometrie
 }
 
 CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
-                               SavedTree saved)
+                               const SavedScene& saved)
     : device_(device),
-      image_(std::move(saved.image)),
+      image_(saved.image),
       memory_(device.memory().allocator()),
       references_(memory_, geometries, count),
-      tree_(std::move(saved.tree)),
-      triangle_count_(static_cast<size_t>(saved.triangle_count)) {
+      tree_(saved.tree.tree()),
+      triangle_count_(static_cast<size_t>(saved.tree.primitive_count)) {
   number_triangles(geometries, count);
+  const size_t most = saved.parts.mesh_tree ? 0 : numbered_count_;
+  if (saved.tree.primitive_count > most) {
+    throw Error(KIWAMI_ERROR_INVALID_FILE, "the tree holds %llu triangles, expected at most %zu",
+                static_cast<unsigned long long>(saved.tree.primitive_count), most);
+  }
   kernels_ = kernels_of(device.isa(), tree_.width, tree_.leaf_layout);
-  show_tree(saved.bounds);
+  if (saved.parts.mesh_tree) {
+    meshes_.restore(device, geometries, count, *image_, saved.parts, memory_);
+  }
+  show_tree(saved.parts.mesh_tree ? meshes_.tree().bounds : saved.tree.bounds);
+  parts_.restore(geometries, count, saved.parts, tree_.width, memory_);
+  if (saved.parts.mesh_tree) parts_.add(meshes_.tree(), meshes_.view());
+  show_parts();
   describe();
-  info_.total_bytes += tree_.memory.bytes();
-  info_.peak_build_bytes += tree_.memory.bytes();
+  info_.total_bytes += saved.borrowed_bytes;
+  info_.peak_build_bytes += saved.borrowed_bytes;
   info_.build_seconds = saved.build_seconds;
 }
 
@@ -148,7 +165,6 @@ void CommittedScene::destroy(CommittedScene* scene) noexcept {
 void CommittedScene::number_triangles(const AttachedGeometry* geometries, size_t count) {
   mesh_views_ = Array<TriangleMeshView>(memory_, count);
   ranges_ = Array<GeometryRange>(memory_, count);
-  opacities_.clear();
   view_.has_masks = 0;
   uint64_t next_id = 0;
   size_t used = 0;
@@ -231,6 +247,7 @@ void CommittedScene::build(const SceneParameters& parameters,
 }
 
 void CommittedScene::show_tree(const Bounds& bounds) {
+  tree_bounds_ = bounds;
   view_.tree = tree_.view;
   view_.ranges = ranges_.data();
   view_.range_count = static_cast<uint32_t>(ranges_.size());

@@ -10,6 +10,7 @@
 #include "core/geometry.h"
 #include "core/memory.h"
 #include "core/object.h"
+#include "core/saved_scene.h"
 #include "core/scene_meshes.h"
 #include "core/scene_opacities.h"
 #include "core/scene_parameters.h"
@@ -19,13 +20,11 @@
 
 namespace kiwami {
 
-/// What a file holds of a committed scene beside its geometries.
-struct SavedTree {
-  Reference<FileImage> image;  ///< where the tree's memory lies
-  WideTree tree;
-  uint64_t triangle_count;
-  Bounds bounds;
-  double build_seconds;
+/// A geometry as it was when its scene was committed.
+struct CommittedGeometry {
+  Geometry* geometry;
+  uint32_t geometry_id;
+  uint32_t mask;
 };
 
 /// What a commit makes and the kernels read: the tree and the tables around it. Holds the
@@ -44,8 +43,10 @@ class CommittedScene : public Object<CommittedScene> {
   CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
                  const SceneParameters& parameters, std::span<const RepresentativeRay> rays,
                  const CommittedScene* before, bool refits, const Parallel& parallel);
-  /// Of count geometries, whose tree was saved. Throws Error.
-  CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count, SavedTree saved);
+  /// Of count geometries by rising geometry_id, whose trees were saved. The scenes that instances
+  /// among them show are committed. Throws Error.
+  CommittedScene(Device& device, const AttachedGeometry* geometries, size_t count,
+                 const SavedScene& saved);
   /// A copy, to be refitted.
   CommittedScene(const CommittedScene& other, const Parallel& parallel);
   static void destroy(CommittedScene* scene) noexcept;
@@ -89,6 +90,13 @@ class CommittedScene : public Object<CommittedScene> {
   uint32_t instance_depth() const { return parts_.instances().depth(); }
   /// Those that have a tree each; empty where one tree holds all.
   const SceneMeshes& meshes() const { return meshes_; }
+  const SceneParts& parts() const { return parts_; }
+  /// By rising geometry_id.
+  std::span<const CommittedGeometry> geometries() const { return references_.geometries(); }
+  /// Of a mesh of source(); nullptr: it has none.
+  const OpacityMap* opacity_of(size_t mesh) const { return opacities_.map_of(mesh); }
+  /// Of what the tree, or the trees of meshes, hold.
+  const Bounds& tree_bounds() const { return tree_bounds_; }
   /// What it holds beside geometries and the scenes of meshes.
   size_t own_bytes() const { return memory_.bytes_in_use() + sizeof(*this); }
   /// Triangles of all meshes, skipped ones included.
@@ -112,10 +120,14 @@ class CommittedScene : public Object<CommittedScene> {
 
     /// The bytes of their copied buffers, each geometry counted once however often it is attached.
     size_t copied_bytes() const;
+    std::span<const CommittedGeometry> geometries() const {
+      return {geometries_.data(), geometries_.size()};
+    }
 
    private:
-    Array<Geometry*> geometries_;  ///< sorted by address
-    Array<BufferCopy*> buffers_;   ///< nullptr: the geometry has none
+    Array<CommittedGeometry> geometries_;  ///< by rising geometry_id
+    Array<uint32_t> by_address_;           ///< their indices
+    Array<BufferCopy*> buffers_;           ///< nullptr: the geometry has none
   };
 
   void number_triangles(const AttachedGeometry* geometries, size_t count);
@@ -142,6 +154,7 @@ class CommittedScene : public Object<CommittedScene> {
   SceneMeshes meshes_;
   SceneParts parts_;
   SceneView view_{};
+  Bounds tree_bounds_ = Bounds::empty();
   size_t numbered_count_ = 0;  ///< triangles of all meshes, skipped ones included
   size_t triangle_count_ = 0;
   Array<uint32_t> skipped_ids_;  ///< of triangles that had no place in the tree when it was built

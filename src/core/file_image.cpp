@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -18,6 +19,9 @@ namespace {
 
 /// What a stream is asked for first; after that, as much as it has given already.
 constexpr size_t kFirstRead = size_t{1} << 16;
+
+/// What one task reads: several huge pages.
+constexpr size_t kBlockSize = size_t{1} << 23;
 
 /// Where the caller's own bytes have to lie to be used there.
 constexpr size_t kAlignment = 64;
@@ -50,26 +54,55 @@ class OpenFile {
 
   /// Up to size bytes; 0 at the end.
   size_t read(void* data, size_t size) const {
-    // The greatest count that Linux takes at once is a little below 2^31.
-    const size_t most = std::min(size, size_t{1} << 30);
+    return retried([&] { return ::read(number_, data, std::min(size, kMostAtOnce)); });
+  }
+  /// The same from a place of a regular file on.
+  size_t read_at(size_t offset, void* data, size_t size) const {
+    return retried([&] {
+      return ::pread(number_, data, std::min(size, kMostAtOnce), static_cast<off_t>(offset));
+    });
+  }
+
+ private:
+  /// The greatest count that Linux takes at once is a little below 2^31.
+  static constexpr size_t kMostAtOnce = size_t{1} << 30;
+
+  template <typename Read>
+  size_t retried(Read&& read) const {
     for (;;) {
-      const ssize_t count = ::read(number_, data, most);
+      const ssize_t count = read();
       if (count >= 0) return static_cast<size_t>(count);
       if (errno != EINTR) fail_io("read", path_);
     }
   }
 
- private:
   const char* path_;
   int number_;
 };
 
-/// All that read(data, size) gives, up to the 0 of its end; expected is a guess of how much that
-/// is.
+/// Reads a regular file on the device's threads, since most of the time goes into the pages of the
+/// copy. Returns how many of the stated bytes there were.
+size_t read_regular(const OpenFile& file, Array<unsigned char>& bytes, const Parallel& parallel) {
+  std::atomic<size_t> end{bytes.size()};
+  parallel.for_blocks(bytes.size(), kBlockSize, [&](size_t begin, size_t block_end) {
+    for (size_t at = begin; at < block_end;) {
+      const size_t count = file.read_at(at, bytes.data() + at, block_end - at);
+      at += count;
+      if (count != 0) continue;
+      // It was cut since it was opened.
+      size_t lowest = end.load(std::memory_order_relaxed);
+      while (at < lowest && !end.compare_exchange_weak(lowest, at)) {
+      }
+      return;
+    }
+  });
+  return end.load();
+}
+
+/// All that read(data, size) gives, up to the 0 of its end.
 template <typename Read>
-Array<unsigned char> read_all(size_t expected, Memory& memory, size_t& size, Read&& read) {
-  // One byte more, so that the end shows without growing.
-  Array<unsigned char> bytes(memory, std::max(kFirstRead, expected + 1));
+Array<unsigned char> read_all(Memory& memory, size_t& size, Read&& read) {
+  Array<unsigned char> bytes(memory, kFirstRead);
   for (size = 0;;) {
     if (size == bytes.size()) {
       Array<unsigned char> larger(memory, bytes.size() * 2);
@@ -126,7 +159,7 @@ void FileImage::take_data(const kiwami_load_desc& desc) {
 }
 
 void FileImage::read_stream(kiwami_read read, void* user) {
-  copy_ = read_all(0, device_->memory(), size_, [&](void* data, size_t size) {
+  copy_ = read_all(device_->memory(), size_, [&](void* data, size_t size) {
     const int64_t count = read(user, data, size);
     if (count < 0 || static_cast<uint64_t>(count) > size) {
       throw Error(KIWAMI_ERROR_CALLBACK, "read returned %lld for %zu bytes, expected 0 to %zu",
@@ -150,8 +183,14 @@ void FileImage::open_file(const char* path, bool maps) {
       return;
     }
   }
-  copy_ = read_all(stated, device_->memory(), size_,
-                   [&](void* data, size_t size) { return file.read(data, size); });
+  if (stated != 0) {
+    copy_ = Array<unsigned char>(device_->memory(), stated);
+    size_ = read_regular(file, copy_, device_->parallel());
+  } else {
+    // Also of files whose size is not told before they are read.
+    copy_ = read_all(device_->memory(), size_,
+                     [&](void* data, size_t size) { return file.read(data, size); });
+  }
   data_ = copy_.data();
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/buffer_copy.h"
 #include "core/device.h"
+#include "core/file_image.h"
 #include "core/memory.h"
 #include "core/object.h"
 #include "kiwami/geometry.h"
@@ -44,6 +45,9 @@ class Geometry : public Object<Geometry> {
  protected:
   Geometry(Device& device, GeometryKind kind, uint32_t mask)
       : device_(device), kind_(kind), mask_(mask) {}
+  /// One whose buffers lie in a file, which it holds.
+  Geometry(Device& device, FileImage& image, GeometryKind kind, uint32_t mask)
+      : device_(device), image_(image), kind_(kind), mask_(mask) {}
   ~Geometry() = default;
   void has_changed() { ++version_; }
 
@@ -52,6 +56,7 @@ class Geometry : public Object<Geometry> {
   virtual void end(Memory& memory) noexcept = 0;
 
   Reference<Device> device_;
+  Reference<FileImage> image_;
   GeometryKind kind_;
   uint32_t mask_;
   uint64_t version_ = 0;

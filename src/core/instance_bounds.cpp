@@ -136,8 +136,8 @@ InverseBound bound_inverses(const Affine& start, const Affine& end) {
                                           row_sum_norm(product_of(inverse, difference)));
     const double norm = row_sum_norm(map) + half * row_sum_norm(difference);
     const double inverse_norm = row_sum_norm(inverse);
-    // Comparisons with NaN are false.
-    if (!(norm * inverse_norm < kMaxCondition)) return unknown;
+    // Comparisons with NaN are false, and norms of it may be 0.
+    if (!is_finite(inverse) || !(norm * inverse_norm < kMaxCondition)) return unknown;
     if (change <= 0.25) {
       greatest.norm = std::max(greatest.norm, inverse_norm / (1.0 - change));
       greatest.condition = std::max(greatest.condition, norm * inverse_norm / (1.0 - change));

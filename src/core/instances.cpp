@@ -32,12 +32,6 @@ void check_count(const char* name, uint64_t count) {
   }
 }
 
-/// What the caller gives of one step.
-size_t transform_size(TransformFormat format) {
-  return format == TransformFormat::kMatrix ? 12 * sizeof(float)
-                                            : sizeof(kiwami_quaternion_transform);
-}
-
 void check_fields(const kiwami_moving_instances_desc& desc) {
   if (desc.flags & ~uint32_t{KIWAMI_INSTANCES_SHARE_BUFFERS}) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
@@ -130,7 +124,29 @@ Array<Scene*> read_scenes(const kiwami_moving_instances_desc& desc, Device& devi
   return scenes;
 }
 
+/// Of count elements in a file, at so many steps.
+Instances::Elements borrowed(const unsigned char* data, size_t count, size_t element_size,
+                             size_t step_count = 1) {
+  Instances::Elements elements;
+  if (!data) return elements;
+  elements.copy = Array<unsigned char>::borrow(const_cast<unsigned char*>(data),
+                                               step_count * count * element_size);
+  elements.first = data;
+  elements.stride = element_size;
+  return elements;
+}
+
 }  // namespace
+
+size_t transform_bytes(TransformFormat format) {
+  return format == TransformFormat::kMatrix ? 12 * sizeof(float)
+                                            : sizeof(kiwami_quaternion_transform);
+}
+
+bool is_usable(const InstanceTransform& transform) {
+  return is_finite(map_of(transform.inverse)) && is_finite(transform.forward) &&
+         transform.inverse_norm * transform.forward_norm <= kMaxCondition;
+}
 
 InstanceTransform transform_of(const float (&inverse)[4][3]) {
   InstanceTransform transform;
@@ -175,6 +191,24 @@ Instances::Instances(Device& device, const kiwami_moving_instances_desc& desc)
   for (Scene* scene : scenes_) scene->retain();
 }
 
+Instances::Instances(Device& device, FileImage& image, const SavedBuffers& buffers,
+                     Array<Scene*> scenes, bool is_trusted)
+    : Geometry(device, image, GeometryKind::kInstances, buffers.mask),
+      count_(buffers.count),
+      format_(buffers.format),
+      time_(buffers.time),
+      step_stride_(buffers.count * transform_bytes(format_)),
+      scenes_(std::move(scenes)),
+      indices_(borrowed(buffers.indices, buffers.count, sizeof(uint32_t))),
+      transforms_(borrowed(buffers.transforms, buffers.count, transform_bytes(format_),
+                           time_.segment_count + 1)),
+      masks_(borrowed(buffers.masks, buffers.count, sizeof(uint32_t))) {
+  if (is_moving()) check_time_steps(time_.segment_count + 1, time_.begin, time_.end);
+  if (!is_trusted) check_instances();
+  // The last step, which the destructor undoes.
+  for (Scene* scene : scenes_) scene->retain();
+}
+
 Instances::~Instances() {
   for (Scene* scene : scenes_) scene->release();
 }
@@ -196,7 +230,7 @@ Instances::Elements Instances::elements_of(const char* name, const char* stride_
 }
 
 void Instances::take_transforms(const kiwami_moving_instances_desc& desc, bool is_shared) {
-  const size_t size = transform_size(format_);
+  const size_t size = transform_bytes(format_);
   const uint32_t step_count = time_.segment_count + 1;
   check_stride("step_stride", desc.step_stride, size);
   check_stride("transform_stride", desc.transform_stride, size);
@@ -241,7 +275,7 @@ uint32_t Instances::instance_mask(uint32_t instance) const {
 }
 
 void Instances::read_step(uint32_t instance, uint32_t step, float* target) const {
-  std::memcpy(target, transforms_.at(instance) + step * step_stride_, transform_size(format_));
+  std::memcpy(target, transforms_.at(instance) + step * step_stride_, transform_bytes(format_));
 }
 
 bool Instances::invert(uint32_t instance, float (&inverse)[4][3]) const {

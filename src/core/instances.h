@@ -24,6 +24,12 @@ struct InstanceTransform {
 /// What the floats of inverse stand for.
 InstanceTransform transform_of(const float (&inverse)[4][3]);
 
+/// Whether kernels can carry rays by it: finite, not nearly singular, scales that margins cover.
+bool is_usable(const InstanceTransform& transform);
+
+/// Bytes of a transform at one step, as the caller gives it.
+size_t transform_bytes(TransformFormat format);
+
 /// An array of instances of one or several scenes, at rest or moving: the caller's buffers, or
 /// packed copies of them.
 class Instances final : public Geometry {
@@ -32,8 +38,23 @@ class Instances final : public Geometry {
   static Instances* create(Device& device, const kiwami_instances_desc& desc);
   static Instances* create(Device& device, const kiwami_moving_instances_desc& desc);
 
+  /// Tightly packed buffers in a file.
+  struct SavedBuffers {
+    uint32_t count;
+    uint32_t mask;
+    TransformFormat format;
+    TimeSteps time;                   ///< of no segments: at rest
+    const unsigned char* transforms;  ///< of one step after the other
+    const unsigned char* indices;     ///< may be nullptr, as masks
+    const unsigned char* masks;
+  };
+
   /// Of a checked description; one step: at rest.
   Instances(Device& device, const kiwami_moving_instances_desc& desc);
+  /// Over buffers in a file, which it holds, of scenes, at least one. Checks them unless they are
+  /// trusted.
+  Instances(Device& device, FileImage& image, const SavedBuffers& buffers, Array<Scene*> scenes,
+            bool is_trusted);
   ~Instances();
 
   uint32_t count() const { return count_; }
@@ -44,6 +65,20 @@ class Instances final : public Geometry {
   TransformFormat format() const { return format_; }
   /// Of no segments where the instances rest.
   const TimeSteps& time() const { return time_; }
+
+  /// Elements that lie a stride apart.
+  struct Elements {
+    const unsigned char* first = nullptr;  ///< nullptr: none
+    size_t stride = 0;
+    Array<unsigned char> copy;
+
+    const unsigned char* at(uint32_t i) const { return first + size_t{i} * stride; }
+  };
+  const Elements& indices() const { return indices_; }
+  /// Of the first step. The next ones lie step_stride() bytes further each.
+  const Elements& transforms() const { return transforms_; }
+  size_t step_stride() const { return step_stride_; }
+  const Elements& masks() const { return masks_; }
   size_t copied_bytes() const override {
     return indices_.copy.bytes() + transforms_.copy.bytes() + masks_.copy.bytes();
   }
@@ -65,15 +100,6 @@ class Instances final : public Geometry {
   void check_instances() const;
 
  private:
-  /// Elements that lie a stride apart.
-  struct Elements {
-    const unsigned char* first = nullptr;  ///< nullptr: none
-    size_t stride = 0;
-    Array<unsigned char> copy;
-
-    const unsigned char* at(uint32_t i) const { return first + size_t{i} * stride; }
-  };
-
   void end(Memory& memory) noexcept override { destroy_object(memory, this); }
   Elements elements_of(const char* name, const char* stride_name, const void* data, uint64_t stride,
                        size_t element_size, bool is_shared);

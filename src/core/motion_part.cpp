@@ -7,6 +7,7 @@
 
 #include "core/collect_boxes.h"
 #include "core/error.h"
+#include "core/saved_scene.h"
 
 namespace kiwami {
 namespace {
@@ -95,18 +96,34 @@ void MotionTree::number(const AttachedGeometry* geometries, size_t count, Memory
 void MotionTree::build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan) {
   number(geometries, count, plan.memory);
   if (meshes_.empty()) return;
-  data_.meshes = meshes_.data();
-  data_.mesh_count = static_cast<uint32_t>(meshes_.size());
-  data_.scene.ranges = ranges_.data();
-  data_.scene.range_count = static_cast<uint32_t>(ranges_.size());
-  Array<TimeSteps> times(plan.memory, meshes_.size());
-  for (size_t i = 0; i < meshes_.size(); ++i) times[i] = meshes_[i].time;
+  const TimeSteps time = show(plan.memory);
   Array<BuildPrimitive> boxes = collect(plan.memory, plan.parallel, extent_);
-  tree_.build(std::move(boxes), extent_, common_steps(times.data(), times.size()), *this, plan);
+  tree_.build(std::move(boxes), extent_, time, *this, plan);
   data_.boxes = tree_.boxes();
   if (plan.parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     validate(plan.memory, plan.parallel);
   }
+}
+
+TimeSteps MotionTree::show(Memory& memory) {
+  data_.meshes = meshes_.data();
+  data_.mesh_count = static_cast<uint32_t>(meshes_.size());
+  data_.scene.ranges = ranges_.data();
+  data_.scene.range_count = static_cast<uint32_t>(ranges_.size());
+  Array<TimeSteps> times(memory, meshes_.size());
+  for (size_t i = 0; i < meshes_.size(); ++i) times[i] = meshes_[i].time;
+  return common_steps(times.data(), times.size());
+}
+
+void MotionTree::restore(const AttachedGeometry* geometries, size_t count, const SavedTree* saved,
+                         std::span<const unsigned char> bounds, Memory& memory) {
+  number(geometries, count, memory);
+  check_saved_part("moving triangles", numbered_count_, saved);
+  if (!saved) return;
+  const TimeSteps time = show(memory);
+  extent_ = saved->bounds;
+  tree_.restore(*saved, time, bounds);
+  data_.boxes = tree_.boxes();
 }
 
 Array<BuildPrimitive> MotionTree::collect(Memory& memory, const Parallel& parallel,

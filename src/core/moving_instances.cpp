@@ -6,6 +6,7 @@
 
 #include "core/collect_boxes.h"
 #include "core/committed_scene.h"
+#include "core/saved_scene.h"
 #include "math/rounding.h"
 
 namespace kiwami {
@@ -60,7 +61,7 @@ class MovingInstances::Source final : public MovingSource {
     return error;
   }
 
-  /// Whether all of an array are at all times; what shows nothing is not asked.
+  /// Whether all of an array are at all times, whatever they show.
   bool is_regular(uint32_t array) const {
     const Entry* const first = entries_.data() + places_[array];
     return std::all_of(first, first + moving_.arrays_[array].count,
@@ -141,15 +142,15 @@ class MovingInstances::Source final : public MovingSource {
   }
 
   Entry measure(const MovingArray& array, uint32_t number) const {
-    Entry entry{Bounds::empty(), {}, 0.0, 0.0, true};
+    Entry entry{Bounds::empty(), {}, 0.0, 0.0, false};
     const CommittedScene& scene = scene_of(number);
     const Bounds inner = scene.bounds();
-    if (inner.is_empty()) return entry;
     const MotionLimits limits =
         MotionLimits::of(steps_of(array, number, 0), array.time.segment_count, array.format);
+    entry.is_regular = limits.is_regular;
+    if (inner.is_empty()) return entry;
     entry.rounding = limits.rounding(inner);
     entry.reach = limits.reach(inner);
-    entry.is_regular = limits.is_regular;
     for (uint32_t segment = 0; segment < array.time.segment_count; ++segment) {
       const double margin = entry.rounding + bow(array, number, segment, inner);
       entry.bounds.extend(image_at(array, number, segment, 0.0, inner, margin));
@@ -182,13 +183,10 @@ class MovingInstances::Source final : public MovingSource {
     return image_of(map_at(array, steps, is_end ? 0.0 : fraction), inner, margin);
   }
 
+  /// As far as boxes go: see image_of.
   static Bounds widened(const Bounds& box, double margin) {
-    Bounds wider;
-    for (int axis = 0; axis < 3; ++axis) {
-      wider.lower[axis] = round_down(double{box.lower[axis]} - margin);
-      wider.upper[axis] = round_up(double{box.upper[axis]} + margin);
-    }
-    return wider;
+    constexpr Affine same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}};
+    return image_of(same, box, margin);
   }
 
   static Bounds mean_box(const MovingArray& array, uint32_t number, const Bounds& inner) {
@@ -236,6 +234,8 @@ class MovingInstances::Source final : public MovingSource {
 void MovingInstances::reserve(Memory& memory, size_t array_count, size_t step_floats) {
   arrays_ = Array<MovingArray>(memory, array_count);
   steps_ = Array<float>(memory, step_floats);
+  regular_ = Array<uint32_t>(memory, array_count);
+  regular_.fill_zero();
 }
 
 bool MovingInstances::add(const Instances& instances, uint32_t first, const Parallel& parallel) {
@@ -249,34 +249,82 @@ bool MovingInstances::add(const Instances& instances, uint32_t first, const Para
       return;
     }
   });
-  arrays_[array_count_++] = {steps, instances.time(),  instances.format(),
-                             first, instances.count(), 0};
-  used_floats_ += floats;
+  place(instances, first);
   return !is_faulty.load();
+}
+
+void MovingInstances::place(const Instances& instances, uint32_t first) {
+  MovingArray& array = arrays_[array_count_];
+  array.steps = steps_.data() + used_floats_;
+  array.time = instances.time();
+  array.format = instances.format();
+  array.first = first;
+  array.count = instances.count();
+  array.is_regular = regular_[array_count_++];
+  used_floats_ += step_floats_of(instances);
+}
+
+TimeSteps MovingInstances::show(const InstancePart& all, Memory& memory) {
+  data_.instances = all;
+  data_.instances.starts = nullptr;
+  data_.arrays = arrays_.data();
+  data_.array_count = array_count_;
+  Array<TimeSteps> times(memory, array_count_);
+  for (uint32_t i = 0; i < array_count_; ++i) times[i] = arrays_[i].time;
+  return common_steps(times.data(), times.size());
 }
 
 void MovingInstances::build(const InstancePart& all, CommittedScene* const* scenes,
                             const PartPlan& plan) {
   if (array_count_ == 0) return;
-  data_.instances = all;
-  data_.instances.starts = nullptr;
-  data_.arrays = arrays_.data();
-  data_.array_count = array_count_;
-  Array<TimeSteps> times(plan.memory, array_count_);
-  for (uint32_t i = 0; i < array_count_; ++i) times[i] = arrays_[i].time;
+  const TimeSteps time = show(all, plan.memory);
   const Source source(*this, scenes, plan.memory, plan.parallel);
-  for (uint32_t i = 0; i < array_count_; ++i) arrays_[i].is_regular = source.is_regular(i) ? 1 : 0;
+  for (uint32_t i = 0; i < array_count_; ++i) {
+    arrays_[i].is_regular = regular_[i] = source.is_regular(i) ? 1 : 0;
+  }
   bounds_ = source.bounds();
   error_ = source.error();
   if (bounds_.is_empty()) return;
   far_origin_ = static_cast<float>(2.0 * greatest_coordinate(bounds_));
   Bounds extent;
   Array<BuildPrimitive> boxes = source.boxes(plan.memory, extent);
-  tree_.build(std::move(boxes), extent, common_steps(times.data(), times.size()), source, plan);
+  tree_.build(std::move(boxes), extent, time, source, plan);
   data_.boxes = tree_.boxes();
   if (plan.parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     validate(scenes, plan.memory, plan.parallel);
   }
+}
+
+void MovingInstances::borrow(const SavedMovingInstances& saved, Memory& memory) {
+  arrays_ = Array<MovingArray>(memory, saved.regular.size());
+  steps_ = Array<float>::borrow(const_cast<float*>(saved.steps.data()), saved.steps.size());
+  regular_ =
+      Array<uint32_t>::borrow(const_cast<uint32_t*>(saved.regular.data()), saved.regular.size());
+}
+
+void MovingInstances::restore(const InstancePart& all, const SavedMovingInstances& saved,
+                              const SavedTree* tree, Memory& memory) {
+  uint64_t count = 0;
+  for (const MovingArray& array : arrays()) count += array.count;
+  // There is no tree either where they show nothing.
+  if (tree) check_saved_part("instances that move", count, tree);
+  if (array_count_ == 0) return;
+  const TimeSteps time = show(all, memory);
+  bounds_ = saved.bounds;
+  error_ = saved.error;
+  far_origin_ = saved.far_origin;
+  if (!tree) return;
+  tree_.restore(*tree, time, saved.boxes);
+  data_.boxes = tree_.boxes();
+}
+
+SavedMovingInstances MovingInstances::saved() const {
+  return {{steps_.data(), steps_.size()},
+          {regular_.data(), regular_.size()},
+          tree_.bounds(),
+          bounds_,
+          error_,
+          far_origin_};
 }
 
 ScenePart MovingInstances::part() const {

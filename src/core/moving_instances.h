@@ -2,6 +2,8 @@
 // The instances of a committed scene that move: a part of it.
 #pragma once
 
+#include <span>
+
 #include "core/instance_bounds.h"
 #include "core/instances.h"
 #include "core/moving_tree.h"
@@ -9,6 +11,8 @@
 namespace kiwami {
 
 class CommittedScene;
+struct SavedMovingInstances;
+struct SavedTree;
 
 /// Their steps, and the tree over their moving boxes.
 class MovingInstances {
@@ -30,7 +34,21 @@ class MovingInstances {
   /// prototypes in their records. Throws Error.
   void build(const InstancePart& all, CommittedScene* const* scenes, const PartPlan& plan);
 
+  /// Instead of reserve, add and build: takes the steps of arrays from a file, and which of them are
+  /// regular. As many may be placed.
+  void borrow(const SavedMovingInstances& saved, Memory& memory);
+  /// Places an array, whose instances have numbers from first on, behind the one before.
+  void place(const Instances& instances, uint32_t first);
+  /// The tree over them; nullptr: there is none. Throws Error(INVALID_FILE) where there should not
+  /// be one, or of other sizes.
+  void restore(const InstancePart& all, const SavedMovingInstances& saved, const SavedTree* tree,
+               Memory& memory);
+  /// What restore takes, beside the tree.
+  SavedMovingInstances saved() const;
+
   bool empty() const { return array_count_ == 0; }
+  /// The arrays, by rising number of their first instance.
+  std::span<const MovingArray> arrays() const { return {arrays_.data(), array_count_}; }
   /// Whether an instance moves, by its number.
   bool contains(uint32_t number) const {
     if (array_count_ == 0) return false;
@@ -39,6 +57,7 @@ class MovingInstances {
   }
   bool can_be_hit() const { return !tree_.tree().is_empty(); }
   size_t tree_bytes() const { return tree_.bytes(); }
+  const PartTree& tree() const { return tree_.tree(); }
   /// What they show at any time; empty where that is nothing.
   const Bounds& bounds() const { return bounds_; }
   const HitError& error() const { return error_; }
@@ -51,8 +70,12 @@ class MovingInstances {
  private:
   class Source;
 
+  /// What kernels need beside the tree. Returns the steps that its own are, or divide.
+  TimeSteps show(const InstancePart& all, Memory& memory);
+
   Array<MovingArray> arrays_;
-  Array<float> steps_;  ///< of one array after the other
+  Array<float> steps_;       ///< of one array after the other
+  Array<uint32_t> regular_;  ///< MovingArray::is_regular of each
   uint32_t array_count_ = 0;
   size_t used_floats_ = 0;
   MovingTree tree_;

@@ -53,6 +53,19 @@ MovingMesh::MovingMesh(Device& device, const kiwami_moving_mesh_desc& desc)
   check_indices(first_step_of(view_), device);
 }
 
+MovingMesh::MovingMesh(Device& device, FileImage& image, const MovingMeshView& view,
+                       bool is_trusted)
+    : Geometry(device, image, GeometryKind::kMovingMesh, view.mask), view_(view) {
+  check_time_steps(view.time.segment_count + 1, view.time.begin, view.time.end);
+  vertices_ = Array<unsigned char>::borrow(const_cast<unsigned char*>(view.vertices),
+                                           (view.time.segment_count + 1) * view.step_stride);
+  if (view.indices) {
+    indices_ = Array<unsigned char>::borrow(const_cast<unsigned char*>(view.indices),
+                                            view.triangle_count * kMeshElementSize);
+  }
+  if (!is_trusted) check_indices(first_step_of(view_), device);
+}
+
 void MovingMesh::copy_buffers() {
   const size_t step_bytes = view_.vertex_count * kMeshElementSize;
   vertices_ = Array<unsigned char>(device().memory(), (view_.time.segment_count + 1) * step_bytes);

@@ -14,8 +14,13 @@ class MovingMesh final : public Geometry {
   static MovingMesh* create(Device& device, const kiwami_moving_mesh_desc& desc);
 
   MovingMesh(Device& device, const kiwami_moving_mesh_desc& desc);
+  /// Over tightly packed buffers in a file, which it holds. Checks the indices unless they are
+  /// trusted. Throws Error(INVALID_ARGUMENT).
+  MovingMesh(Device& device, FileImage& image, const MovingMeshView& view, bool is_trusted);
 
   uint32_t triangle_count() const { return view_.triangle_count; }
+  /// The buffers alone.
+  const MovingMeshView& buffers() const { return view_; }
   size_t copied_bytes() const override { return vertices_.bytes() + indices_.bytes(); }
 
   /// The mesh as a part of a scene: its running ids begin at first_id.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/saved_scene.h"
 #include "kiwami/moving_mesh.h"
 #include "math/rounding.h"
 
@@ -285,6 +286,26 @@ double MovingTree::mean_area(Memory& memory, const Parallel& parallel) const {
   double all = 0.0;
   for (const double sum : sums) all += sum;
   return all / time_.segment_count;
+}
+
+void MovingTree::restore(const SavedTree& saved, const TimeSteps& time,
+                         std::span<const unsigned char> bounds) {
+  const size_t node_bytes = size_t{saved.width} * (sizeof(MotionBounds<4>) / 4);
+  // No product overflows: there are as many bytes of nodes in the file.
+  const uint64_t undivided = time.segment_count * saved.node_count * node_bytes;
+  const uint64_t division = undivided == 0 ? 1 : bounds.size() / undivided;
+  if (bounds.size() != division * undivided || division == 0 ||
+      division * time.segment_count > kMaxSegments) {
+    throw Error(KIWAMI_ERROR_INVALID_FILE,
+                "the moving boxes have %zu bytes, expected %llu for %u segments of %llu nodes, or "
+                "a multiple for at most %u segments",
+                bounds.size(), static_cast<unsigned long long>(undivided), time.segment_count,
+                static_cast<unsigned long long>(saved.node_count), kMaxSegments);
+  }
+  tree_ = saved.part();
+  time_ = time;
+  time_.segment_count *= static_cast<uint32_t>(division);
+  bounds_ = Array<unsigned char>::borrow(const_cast<unsigned char*>(bounds.data()), bounds.size());
 }
 
 template <int N>

@@ -6,11 +6,15 @@
 // that all of a tree is divided, by the mean area of its boxes, and the nodes stay the same.
 #pragma once
 
+#include <span>
+
 #include "core/linear_bounds.h"
 #include "core/part_tree.h"
 #include "wide/moving_boxes.h"
 
 namespace kiwami {
+
+struct SavedTree;
 
 /// Where the primitives of a moving tree are.
 class MovingSource {
@@ -37,10 +41,17 @@ class MovingTree {
   void build(Array<BuildPrimitive> boxes, const Bounds& extent, const TimeSteps& time,
              const MovingSource& source, const PartPlan& plan);
 
+  /// The same, of a tree that was saved and what bounds() was, whose size says into how many each of
+  /// the segments is divided. Throws Error(INVALID_FILE) where it is that of no division.
+  void restore(const SavedTree& saved, const TimeSteps& time,
+               std::span<const unsigned char> bounds);
+
   /// Its bounds are the extent.
   const PartTree& tree() const { return tree_; }
   /// Points into this object.
   MovingBoxes boxes() const { return {time_, bounds_.data(), tree_.tree.node_count}; }
+  /// MotionBounds of its nodes, segment after segment.
+  std::span<const unsigned char> bounds() const { return {bounds_.data(), bounds_.size()}; }
   size_t bytes() const {
     return tree_.tree.node_bytes() + tree_.tree.leaf_bytes() + bounds_.bytes();
   }

@@ -127,10 +127,10 @@ void Scene::attach_as(uint32_t geometry_id, Geometry& geometry) {
   geometry.retain();
 }
 
-void Scene::restore(SavedTree saved) {
+void Scene::restore(const SavedScene& saved) {
   const Array<AttachedGeometry> attached = attached_geometries();
   committed_ = Reference<CommittedScene>::adopt(make_object<CommittedScene>(
-      device_->memory(), *device_, attached.data(), attached.size(), std::move(saved)));
+      device_->memory(), *device_, attached.data(), attached.size(), saved));
   retired_ = {};
 }
 

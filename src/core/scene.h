@@ -51,17 +51,19 @@ class Scene : public Object<Scene> {
   void commit();
   /// The same, but keeps the tree where it fits what is attached.
   void refit();
-  /// Takes the place of a commit: a structure that was saved, of the attached geometries.
-  void restore(SavedTree saved);
+  /// Takes the place of a commit: a structure that was saved, of the enabled geometries.
+  void restore(const SavedScene& saved);
   /// nullptr before the first commit.
   CommittedScene* committed() const { return committed_.get(); }
 
- private:
   struct Slot {
     Geometry* geometry;  ///< nullptr: free
     bool is_enabled;
   };
+  /// By geometry id.
+  std::span<const Slot> slots() const { return {slots_.data(), slots_.size()}; }
 
+ private:
   Slot& slot(uint32_t geometry_id);
   void check_no_cycle(const Geometry& geometry) const;
   Array<AttachedGeometry> attached_geometries() const;

@@ -7,6 +7,7 @@
 
 #include "core/committed_scene.h"
 #include "core/error.h"
+#include "core/saved_scene.h"
 #include "core/scene.h"
 #include "math/rounding.h"
 #include "wide/slot_owners.h"
@@ -94,20 +95,101 @@ void SceneInstances::build(const AttachedGeometry* geometries, size_t count, con
   if (prototypes_.empty()) return;
   fill_records(geometries, count, plan.memory, plan.parallel);
   measure(plan.memory, plan.parallel);
-  rebraid_mode_ = plan.parameters.whole(KIWAMI_PARAMETER_REBRAID);
-  rebraid_config_.opens_roots_only = rebraid_mode_ == KIWAMI_REBRAID_ROOTS;
-  rebraid_config_.budget = plan.parameters[KIWAMI_PARAMETER_REBRAID_BUDGET];
+  set_rebraiding(plan.parameters.whole(KIWAMI_PARAMETER_REBRAID),
+                 plan.parameters[KIWAMI_PARAMETER_REBRAID_BUDGET]);
   const Array<BraidReference> references = make_references(plan.memory, plan.parallel);
   if (rebraid_mode_ != KIWAMI_REBRAID_OFF) {
     starts_ = Array<InstanceStart>(plan.memory, references.size());
     for (size_t i = 0; i < references.size(); ++i) starts_[i] = references[i].start;
   }
-  data_ = {records_.data(), prototypes_.data(), masks_.empty() ? nullptr : masks_.data(),
-           starts_.empty() ? nullptr : starts_.data()};
+  show();
   const SceneParameters parameters = for_instances(plan.parameters);
   const PartPlan own_plan{parameters, plan.width, plan.memory, plan.parallel};
   tree_ = build_part_tree(boxes_of(references, !starts_.empty(), plan.memory), own_plan);
   moving_.build(data_, scenes_.data(), own_plan);
+}
+
+void SceneInstances::set_rebraiding(uint32_t mode, double budget) {
+  rebraid_mode_ = mode;
+  rebraid_config_.opens_roots_only = mode == KIWAMI_REBRAID_ROOTS;
+  rebraid_config_.budget = budget;
+}
+
+void SceneInstances::show() {
+  data_ = {records_.data(), prototypes_.data(), masks_.empty() ? nullptr : masks_.data(),
+           starts_.empty() ? nullptr : starts_.data()};
+}
+
+SavedInstances SceneInstances::saved() const {
+  return {{records_.data(), records_.size()},
+          {masks_.data(), masks_.size()},
+          {starts_.data(), starts_.size()},
+          bounds_,
+          error_,
+          far_origin_,
+          rebraid_mode_,
+          rebraid_config_.budget,
+          moving_.saved()};
+}
+
+void SceneInstances::restore(const AttachedGeometry* geometries, size_t count,
+                             const SavedParts& saved, uint32_t width, Memory& memory) {
+  width_ = width;
+  collect_prototypes(geometries, count, width, memory);
+  const SavedInstances& from = saved.instances;
+  const uint64_t instance_count = place_moving(geometries, count, from.moving, memory);
+  const bool is_rebraided = from.rebraid_mode != KIWAMI_REBRAID_OFF;
+  const uint64_t leaf_count = is_rebraided ? from.starts.size() : instance_count;
+  const SavedTree* const tree = saved.instance_tree;
+  if (instance_count > kMaxInstanceCount || from.records.size() != instance_count ||
+      (!from.masks.empty() && from.masks.size() != instance_count) ||
+      (tree != nullptr) != (instance_count != 0) || (!tree && saved.moving_instance_tree) ||
+      (tree && tree->primitive_count > leaf_count) || (!is_rebraided && !from.starts.empty())) {
+    throw Error(KIWAMI_ERROR_INVALID_FILE,
+                "the scene has %llu instances, %zu records, %zu masks and %zu starts of them, and "
+                "a tree of %llu, expected as many of all that there are",
+                ull{instance_count}, from.records.size(), from.masks.size(), from.starts.size(),
+                ull{tree ? tree->primitive_count : 0});
+  }
+  if (!tree) return;
+  set_rebraiding(from.rebraid_mode, from.rebraid_budget);
+  const auto borrow = [](auto span) {
+    using Element = std::remove_const_t<typename decltype(span)::element_type>;
+    return Array<Element>::borrow(const_cast<Element*>(span.data()), span.size());
+  };
+  records_ = borrow(from.records);
+  masks_ = borrow(from.masks);
+  starts_ = borrow(from.starts);
+  bounds_ = from.bounds;
+  error_ = from.error;
+  far_origin_ = from.far_origin;
+  tree_ = tree->part();
+  show();
+  moving_.restore(data_, from.moving, saved.moving_instance_tree, memory);
+}
+
+uint64_t SceneInstances::place_moving(const AttachedGeometry* geometries, size_t count,
+                                      const SavedMovingInstances& saved, Memory& memory) {
+  uint64_t instance_count = 0;
+  size_t moving_count = 0, step_floats = 0;
+  for_each_instances(geometries, count, [&](const Instances& instances, uint32_t) {
+    instance_count += instances.count();
+    if (!instances.is_moving()) return;
+    ++moving_count;
+    step_floats += MovingInstances::step_floats_of(instances);
+  });
+  if (step_floats != saved.steps.size() || moving_count != saved.regular.size()) {
+    throw Error(KIWAMI_ERROR_INVALID_FILE,
+                "the steps of %zu arrays of instances have %zu numbers, expected %zu of %zu",
+                saved.regular.size(), saved.steps.size(), step_floats, moving_count);
+  }
+  moving_.borrow(saved, memory);
+  uint64_t first = 0;
+  for_each_instances(geometries, count, [&](const Instances& instances, uint32_t) {
+    if (instances.is_moving()) moving_.place(instances, static_cast<uint32_t>(first));
+    first += instances.count();
+  });
+  return instance_count;
 }
 
 void SceneInstances::collect_prototypes(const AttachedGeometry* geometries, size_t count,

@@ -16,6 +16,9 @@
 namespace kiwami {
 
 class CommittedScene;
+struct SavedInstances;
+struct SavedMovingInstances;
+struct SavedParts;
 
 /// The records of all instances, the tree over their boxes, and the scenes that they show.
 class SceneInstances {
@@ -27,6 +30,12 @@ class SceneInstances {
 
   /// Takes the instances among count geometries, by rising id. Throws Error.
   void build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan);
+
+  /// The same, of what was saved. Throws Error(INVALID_FILE) where that is of other sizes.
+  void restore(const AttachedGeometry* geometries, size_t count, const SavedParts& saved,
+               uint32_t width, Memory& memory);
+  /// What restore takes, beside the tree.
+  SavedInstances saved() const;
 
   bool empty() const { return records_.empty(); }
   size_t count() const { return records_.size(); }
@@ -48,6 +57,10 @@ class SceneInstances {
     error.extend(moving_.error());
     return error;
   }
+  /// Of those that rest.
+  const PartTree& part_tree() const { return tree_; }
+  /// Those that the geometries show, one after the other.
+  CommittedScene& shown(size_t prototype) const { return *scenes_[prototype]; }
   /// The instances on the longest path to a hit.
   uint32_t depth() const { return depth_; }
   /// Of those that rest.
@@ -62,10 +75,16 @@ class SceneInstances {
   /// The trees of the shown scenes.
   class Trees;
 
+  void set_rebraiding(uint32_t mode, double budget);
+  void show();
   void collect_prototypes(const AttachedGeometry* geometries, size_t count, uint32_t width,
                           Memory& memory);
   void fill_records(const AttachedGeometry* geometries, size_t count, Memory& memory,
                     const Parallel& parallel);
+  /// Takes the steps of those that move from a file, and says how many instances there are in all.
+  /// Throws Error(INVALID_FILE) where there are too few or too many steps.
+  uint64_t place_moving(const AttachedGeometry* geometries, size_t count,
+                        const SavedMovingInstances& saved, Memory& memory);
   void measure(Memory& memory, const Parallel& parallel);
   Array<BraidReference> make_references(Memory& memory, const Parallel& parallel) const;
   Extent extent_of(uint32_t instance) const;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/committed_scene.h"
+#include "core/error.h"
 #include "core/triangle_mesh.h"
 
 namespace kiwami {
@@ -124,11 +125,41 @@ SceneMeshes::~SceneMeshes() {
 
 void SceneMeshes::build(const Input& input, Memory& memory, const Parallel& parallel) {
   Builder(*this, input).run(memory, parallel);
+  show(memory);
+  const SceneParameters above = parameters_above(input.parameters);
+  tree_ = build_part_tree(boxes(memory), {above, input.width, memory, parallel});
+}
+
+void SceneMeshes::show(Memory& memory) {
   views_ = Array<const SceneView*>(memory, entries_.size());
   for (size_t i = 0; i < entries_.size(); ++i) views_[i] = &entries_[i].scene->view();
   data_ = {views_.data()};
-  const SceneParameters above = parameters_above(input.parameters);
-  tree_ = build_part_tree(boxes(memory), {above, input.width, memory, parallel});
+}
+
+void SceneMeshes::restore(Device& device, const AttachedGeometry* geometries, size_t count,
+                          FileImage& image, const SavedParts& saved, Memory& memory) {
+  size_t mesh_count = 0;
+  for (size_t i = 0; i < count; ++i) mesh_count += mesh_of(geometries[i]) ? 1 : 0;
+  if (saved.mesh_trees.size() != mesh_count || saved.mesh_tree->primitive_count > mesh_count) {
+    throw Error(KIWAMI_ERROR_INVALID_FILE,
+                "the scene has %zu trees of meshes, and one over %llu of them, expected %zu",
+                saved.mesh_trees.size(),
+                static_cast<unsigned long long>(saved.mesh_tree->primitive_count), mesh_count);
+  }
+  entries_ = Array<Entry>(memory, mesh_count);
+  entries_.fill_zero();
+  const SavedParts nothing{};
+  size_t next = 0;
+  for (size_t i = 0; i < count; ++i) {
+    if (!mesh_of(geometries[i])) continue;
+    const AttachedGeometry& attached = geometries[i];
+    Entry& entry = entries_[next];
+    entry = {nullptr, attached.geometry, attached.geometry->version(), attached.geometry_id};
+    const SavedScene scene{Reference<FileImage>(image), saved.mesh_trees[next++], nothing, 0.0, 0};
+    entry.scene = make_object<CommittedScene>(device.memory(), device, &attached, size_t{1}, scene);
+  }
+  show(memory);
+  tree_ = saved.mesh_tree->part();
 }
 
 ScenePart SceneMeshes::view() const {

@@ -15,6 +15,7 @@
 namespace kiwami {
 
 class CommittedScene;
+struct SavedParts;
 
 /// A committed scene of each mesh, and the tree over their boxes. Successive commits share the
 /// scenes of meshes that have not changed.
@@ -40,7 +41,15 @@ class SceneMeshes {
   /// Throws Error.
   void build(const Input& input, Memory& memory, const Parallel& parallel);
 
+  /// The same, with trees that were saved. Throws Error(INVALID_FILE) where there are too few or
+  /// too many of them.
+  void restore(Device& device, const AttachedGeometry* geometries, size_t count, FileImage& image,
+               const SavedParts& saved, Memory& memory);
+
   bool empty() const { return entries_.empty(); }
+  size_t count() const { return entries_.size(); }
+  /// Of a mesh, by rising geometry_id.
+  const CommittedScene& scene(size_t mesh) const { return *entries_[mesh].scene; }
   const PartTree& tree() const { return tree_; }
   ScenePart view() const;
   /// Adds what the scenes of the meshes are made of, to info of none.
@@ -58,6 +67,7 @@ class SceneMeshes {
   };
   class Builder;
 
+  void show(Memory& memory);
   const Entry* find(uint32_t geometry_id) const;
   Array<BuildPrimitive> boxes(Memory& memory) const;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene_parts.h"
 
+#include "core/saved_scene.h"
+
 namespace kiwami {
 
 void SceneParts::build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan) {
@@ -14,6 +16,19 @@ void SceneParts::build(const AttachedGeometry* geometries, size_t count, const P
   user_.build(geometries, count, plan);
   add(user_.tree(), user_.view());
   motion_.build(geometries, count, plan);
+  add(motion_.tree(), motion_.view());
+}
+
+void SceneParts::restore(const AttachedGeometry* geometries, size_t count, const SavedParts& saved,
+                         uint32_t width, Memory& memory) {
+  instances_.restore(geometries, count, saved, width, memory);
+  if (instances_.can_be_hit()) views_[count_++] = instances_.part();
+  if (instances_.moving().can_be_hit()) views_[count_++] = instances_.moving().part();
+  for (size_t kind = 0; kind < 3; ++kind) {
+    shapes_[kind].restore(geometries, count, saved.shape_trees[kind], memory);
+    add(shapes_[kind].tree(), shapes_[kind].view());
+  }
+  motion_.restore(geometries, count, saved.motion_tree, saved.motion_bounds, memory);
   add(motion_.tree(), motion_.view());
 }
 

@@ -18,6 +18,11 @@ class SceneParts {
   /// Of count geometries by rising geometry_id. Throws Error.
   void build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan);
 
+  /// The same, with trees that were saved. Throws Error(INVALID_FILE) where there are too few or
+  /// too many of them.
+  void restore(const AttachedGeometry* geometries, size_t count, const SavedParts& saved,
+               uint32_t width, Memory& memory);
+
   /// Adds a part that lies elsewhere, unless it is empty. Its box and its counts are not added.
   void add(const PartTree& tree, const ScenePart& view);
 
@@ -26,6 +31,8 @@ class SceneParts {
   uint32_t count() const { return count_; }
 
   const SceneInstances& instances() const { return instances_; }
+  const ShapePart& shapes(ShapeKind kind) const { return shapes_[static_cast<uint32_t>(kind)]; }
+  const MotionTree& motion() const { return motion_; }
 
   /// The box of them all.
   Bounds bounds() const;

@@ -5,6 +5,7 @@
 
 #include "core/collect_boxes.h"
 #include "core/error.h"
+#include "core/saved_scene.h"
 #include "math/rounding.h"
 
 namespace kiwami {
@@ -119,8 +120,8 @@ bool make_box(ShapeKind kind, const ShapeView& view, uint32_t primitive, Bounds&
 
 }  // namespace
 
-void ShapePart::build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan) {
-  views_ = Array<ShapeView>(plan.memory, count);
+void ShapePart::number(const AttachedGeometry* geometries, size_t count, Memory& memory) {
+  views_ = Array<ShapeView>(memory, count);
   uint64_t next_id = 0;
   size_t used = 0;
   for (size_t i = 0; i < count; ++i) {
@@ -139,7 +140,18 @@ void ShapePart::build(const AttachedGeometry* geometries, size_t count, const Pa
   views_.shrink(used);
   numbered_count_ = static_cast<size_t>(next_id);
   source_ = {views_.data(), static_cast<uint32_t>(used), source_.kind};
-  if (used != 0) tree_ = build_part_tree(collect(plan.memory, plan.parallel), plan);
+}
+
+void ShapePart::build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan) {
+  number(geometries, count, plan.memory);
+  if (!views_.empty()) tree_ = build_part_tree(collect(plan.memory, plan.parallel), plan);
+}
+
+void ShapePart::restore(const AttachedGeometry* geometries, size_t count, const SavedTree* saved,
+                        Memory& memory) {
+  number(geometries, count, memory);
+  check_saved_part("shapes", numbered_count_, saved);
+  if (saved) tree_ = saved->part();
 }
 
 Array<BuildPrimitive> ShapePart::collect(Memory& memory, const Parallel& parallel) const {

@@ -6,6 +6,8 @@
 
 namespace kiwami {
 
+struct SavedTree;
+
 /// The shapes of one kind in a scene, and the tree over them.
 class ShapePart {
  public:
@@ -16,6 +18,11 @@ class ShapePart {
   /// Of those among count geometries that are of the kind, by rising geometry_id. Throws Error.
   void build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan);
 
+  /// The same, with a tree that was saved; nullptr: there is none. Throws Error(INVALID_FILE)
+  /// where there should not be one, or should.
+  void restore(const AttachedGeometry* geometries, size_t count, const SavedTree* saved,
+               Memory& memory);
+
   /// Points into this object.
   ScenePart view() const;
   const PartTree& tree() const { return tree_; }
@@ -25,6 +32,7 @@ class ShapePart {
   void validate(Memory& memory, const Parallel& parallel) const;
 
  private:
+  void number(const AttachedGeometry* geometries, size_t count, Memory& memory);
   Array<BuildPrimitive> collect(Memory& memory, const Parallel& parallel) const;
 
   Array<ShapeView> views_;

@@ -114,6 +114,18 @@ Shapes::Shapes(Device& device, const Description& description)
   check_indices();
 }
 
+Shapes::Shapes(Device& device, FileImage& image, GeometryKind kind, const ShapeView& view,
+               bool is_trusted)
+    : Geometry(device, image, kind, view.mask), view_(view) {
+  const auto borrow = [](const unsigned char* data, size_t count, size_t size) {
+    return Array<unsigned char>::borrow(const_cast<unsigned char*>(data), data ? count * size : 0);
+  };
+  points_ = borrow(view.points, view.point_count, kPointSize);
+  normals_ = borrow(view.normals, view.count, kNormalSize);
+  indices_ = borrow(view.indices, view.count, kIndexSize);
+  if (!is_trusted) check_indices();
+}
+
 void Shapes::copy_buffers() {
   const auto copy = [&](Array<unsigned char>& own, const unsigned char*& data, size_t& stride,
                         size_t count, size_t size) {

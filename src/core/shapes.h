@@ -31,8 +31,14 @@ class Shapes final : public Geometry {
     Buffer points, normals, indices;
   };
   Shapes(Device& device, const Description& description);
+  /// Over tightly packed buffers in a file, which it holds. Checks the indices unless they are
+  /// trusted. Throws Error(INVALID_ARGUMENT).
+  Shapes(Device& device, FileImage& image, GeometryKind kind, const ShapeView& view,
+         bool is_trusted);
 
   uint32_t count() const { return view_.count; }
+  /// The buffers alone.
+  const ShapeView& buffers() const { return view_; }
   size_t copied_bytes() const override {
     return points_.bytes() + normals_.bytes() + indices_.bytes();
   }

@@ -39,7 +39,7 @@ TriangleMesh::TriangleMesh(Device& device, const kiwami_triangle_mesh_desc& desc
 
 TriangleMesh::TriangleMesh(Device& device, FileImage& image, const TriangleMeshView& view,
                            bool is_trusted)
-    : Geometry(device, GeometryKind::kTriangleMesh, view.mask), image_(image), view_(view) {
+    : Geometry(device, image, GeometryKind::kTriangleMesh, view.mask), view_(view) {
   vertices_ = Reference<BufferCopy>::adopt(BufferCopy::create(
       device, Array<unsigned char>::borrow(const_cast<unsigned char*>(view.vertices),
                                            view.vertex_count * kMeshElementSize)));

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bvh/triangle_source.h"
-#include "core/file_image.h"
 #include "core/geometry.h"
 #include "core/opacity_map.h"
 
@@ -45,7 +44,6 @@ class TriangleMesh final : public Geometry {
   void end(Memory& memory) noexcept override { destroy_object(memory, this); }
   void copy_buffers();
 
-  Reference<FileImage> image_;
   // None for shared vertices; those in a file are borrowed. The spare one takes the next vertices
   // if nobody holds it by then.
   Reference<BufferCopy> vertices_, spare_vertices_;

@@ -7,7 +7,7 @@
 #include "io/file_format.h"
 #include "io/file_reader.h"
 #include "io/file_writer.h"
-#include "io/mesh_sections.h"
+#include "io/geometry_sections.h"
 
 namespace kiwami {
 namespace {
@@ -26,6 +26,22 @@ Array<T> copy_of(const FileReader& reader, SectionType type, Memory& memory) {
   Array<T> copy(memory, elements.size());
   std::copy(elements.begin(), elements.end(), copy.begin());
   return copy;
+}
+
+/// The mesh of a file; none where there are no triangles.
+Reference<TriangleMesh> mesh_of(const FileReader& reader, Device& device, FileImage& image,
+                                bool is_trusted) {
+  const SavedGeometries geometries(reader, 0);
+  Reference<TriangleMesh> mesh;
+  geometries.for_each([&](uint32_t id, const SavedGeometry& saved) {
+    if (id != 0 || saved.kind() != SavedKind::kTriangleMesh || saved.has(kHasOpacity)) {
+      fail("geometry %u of the tree is of kind %u, expected one plain mesh", id, saved.record.kind);
+    }
+    if (saved.record.primitive_count == 0) return;
+    const auto made = make_geometry(saved, {}, device, image, is_trusted);
+    mesh = Reference<TriangleMesh>(static_cast<TriangleMesh&>(*made));
+  });
+  return mesh;
 }
 
 /// What the tree itself does not tell: its checks go by these numbers.
@@ -82,19 +98,24 @@ uint64_t save_bvh(const Bvh& bvh, const kiwami_save_desc& desc) {
   Memory& memory = bvh.device().memory();
   const BvhRecord record = {bvh.info().width, bvh.info().leaf_width, bvh.is_over_boxes() ? 1u : 0u,
                             0, bvh.info().build_seconds};
-  const MeshSections meshes(bvh.source(), memory);
   FileWriter writer(KIWAMI_FILE_BVH, memory, bvh.device().parallel());
-  writer.begin_section(SectionType::kBvh, 1);
+  writer.begin_section(SectionType::kBvh);
   writer.add(&record, 1);
-  writer.begin_section(SectionType::kNodes, 1);
+  writer.begin_section(SectionType::kNodes);
   writer.add(bvh.nodes().data(), bvh.nodes().size());
-  writer.begin_section(SectionType::kPrimitives, 1);
+  writer.begin_section(SectionType::kPrimitives);
   writer.add(bvh.primitive_ids().data(), bvh.primitive_ids().size());
-  writer.begin_section(SectionType::kSkipped, 1);
+  writer.begin_section(SectionType::kSkipped);
   writer.add(bvh.skipped_ids().data(), bvh.skipped_ids().size());
-  writer.begin_section(SectionType::kBoxes, 1);
+  writer.begin_section(SectionType::kBoxes);
   writer.add(bvh.boxes().data(), bvh.boxes().size());
-  meshes.add_to(writer);
+  const TriangleSource source = bvh.source();
+  Array<GeometryRecord> records(memory, source.mesh_count);
+  for (uint32_t i = 0; i < source.mesh_count; ++i)
+    records[i] = record_of(source.meshes[i], nullptr);
+  writer.add_section(SectionType::kGeometries, 0, records);
+  writer.begin_section(SectionType::kBuffers);
+  for (uint32_t i = 0; i < source.mesh_count; ++i) add_buffers(writer, source.meshes[i], nullptr);
   return save(writer, desc);
 }
 
@@ -114,9 +135,7 @@ Bvh* load_bvh(Device& device, const kiwami_load_desc& desc) {
                  copy_of<uint32_t>(reader, SectionType::kSkipped, memory),
                  copy_of<Bounds>(reader, SectionType::kBoxes, memory),
                  {}};
-  const SavedMeshes meshes(reader);
-  if (meshes.size() > 1) fail("the tree has %zu meshes, expected at most one", meshes.size());
-  if (meshes.size() == 1) saved.mesh = meshes.make(0, device, *image, is_trusted);
+  saved.mesh = mesh_of(reader, device, *image, is_trusted);
   check_numbers(saved, record.is_over_boxes);
   if (!is_trusted) check_boxes(saved);
   const auto bvh = Reference<Bvh>::adopt(Bvh::create(device, std::move(saved)));

@@ -34,20 +34,38 @@ struct Header {
 };
 static_assert(sizeof(Header) == 64 && offsetof(Header, header_checksum) == 56);
 
-/// The numbers of sections are pinned.
+/// The numbers of sections are pinned. Sections that would be empty may be absent.
 enum class SectionType : uint32_t {
-  kScene = 1,       ///< SceneRecord
-  kTree = 2,        ///< nodes, then leaf blocks, as in memory
-  kMeshes = 3,      ///< MeshRecord by geometry id
-  kVertices = 4,    ///< three floats a vertex, of all meshes
-  kIndices = 5,     ///< three uint32 a triangle, of all meshes that have them
-  kParameters = 6,  ///< ParameterRecord
-  kBvh = 7,         ///< BvhRecord
-  kNodes = 8,       ///< kiwami_bvh_node
-  kPrimitives = 9,  ///< uint32, the primitives in the order of the tree
-  kSkipped = 10,    ///< uint32, what the build left out, rising
-  kBoxes = 11       ///< six floats a box
+  kScene = 1,             ///< SceneRecord
+  kTrees = 2,             ///< of each tree: nodes, then leaf blocks, as in memory
+  kGeometries = 3,        ///< GeometryRecord by geometry id
+  kBuffers = 4,           ///< of all geometries, one after the other
+  kTreeRecords = 5,       ///< TreeRecord by the order of the trees
+  kParameters = 6,        ///< ParameterRecord
+  kBvh = 7,               ///< BvhRecord
+  kNodes = 8,             ///< kiwami_bvh_node
+  kPrimitives = 9,        ///< uint32, the primitives in the order of the tree
+  kSkipped = 10,          ///< uint32, what the build left out, rising
+  kBoxes = 11,            ///< six floats a box
+  kShownScenes = 12,      ///< uint32, the scenes that instances show, by geometry
+  kInstances = 13,        ///< InstancesRecord
+  kInstanceRecords = 14,  ///< InstanceRecord
+  kInstanceMasks = 15,    ///< uint32 by instance
+  kInstanceStarts = 16,   ///< InstanceStart
+  kMotionBounds = 17,     ///< MotionBounds by segment and node
+  kLightSet = 18,         ///< LightSetRecord
+  kLights = 19,           ///< LightRecord
+  kLightUserIds = 20,     ///< uint32 by light
+  kLightInstances = 21,   ///< SavedLightInstance
+  kLightLinks = 22,       ///< uint32 by cluster: LightLinks
+  kLightSlots = 23,       ///< uint32 by slot: WideLightTree::slot_clusters
+  kMovingInstances = 24,  ///< MovingInstancesRecord
+  kInstanceSteps = 25,    ///< float, the steps of instances that move, as kernels take them
+  kInstanceBoxes = 26,    ///< MotionBounds by segment and node of their tree
+  kMovingArrays = 27      ///< uint32 by array that moves: MovingArray::is_regular
 };
+/// Of all of them.
+constexpr uint32_t kSectionVersion = 1;
 
 enum : uint32_t {
   /// Who does not know the section must not use the file. Others can be passed over.
@@ -55,12 +73,14 @@ enum : uint32_t {
 };
 
 /// One line of the directory, which follows the header. Sections stand in the order of their lines
-/// and do not overlap.
+/// and do not overlap. Those of a scene follow each other.
 struct SectionEntry {
   uint32_t type;
   uint32_t version;
   uint32_t flags;
-  uint32_t reserved;
+  uint32_t
+      scene;  ///< 0: the one that is saved; those that it shows follow. A scene shows only such
+              ///< of higher numbers.
   uint64_t offset;
   uint64_t bytes;
   uint64_t checksum;
@@ -68,9 +88,34 @@ struct SectionEntry {
 };
 static_assert(sizeof(SectionEntry) == 48);
 
+/// What is told of a scene without looking at the rest.
 struct SceneRecord {
   uint32_t bvh_width;
-  uint32_t leaf_width;
+  uint32_t reserved;
+  uint64_t triangle_count;  ///< as kiwami_scene_info
+  uint64_t node_count;
+  double build_seconds;
+};
+static_assert(sizeof(SceneRecord) == 32);
+
+/// What the leaves of a tree hold. The trees of a scene stand in this order, which is also that of
+/// the parts that kernels see.
+enum class TreeRole : uint32_t {
+  kTriangles = 0,        ///< the static triangles; always there
+  kTrianglesOfMesh = 1,  ///< those of one mesh (KIWAMI_PARAMETER_TWO_LEVEL), by geometry id
+  kInstances = 2,        ///< those that rest
+  kMovingInstances = 3,
+  kSpheres = 4,
+  kDiscs = 5,
+  kCurves = 6,
+  kMovingTriangles = 7,
+  kMeshes = 8  ///< the trees of role kTrianglesOfMesh
+};
+constexpr uint32_t kTreeRoleCount = 9;
+
+struct TreeRecord {
+  uint32_t role;  ///< TreeRole
+  uint32_t width;
   uint32_t depth;
   uint32_t has_duplicates;
   uint32_t leaf_layout;  ///< LeafLayout
@@ -80,27 +125,98 @@ struct SceneRecord {
   uint64_t used_slots;
   uint64_t used_lanes;
   uint64_t root;  ///< ChildReference
-  uint64_t triangle_count;
-  uint64_t skipped_count;
+  uint64_t primitive_count;
   double sah_cost;
-  double build_seconds;
   float centre[3];
   float greatest_bound[3];
   float bounds_min[3];
   float bounds_max[3];
 };
-static_assert(sizeof(SceneRecord) == 144);
+static_assert(sizeof(TreeRecord) == 128);
 
-struct MeshRecord {
-  uint64_t first_vertex;  ///< among those of kVertices
-  uint64_t vertex_count;
-  uint64_t first_index;  ///< the triangle among those of kIndices; kNoIndices: vertices 3i, 3i + 1,
-                         ///< 3i + 2
-  uint32_t triangle_count;  ///< 0: no geometry has this number
-  uint32_t mask;
+/// The numbers of kinds of geometries are pinned.
+enum class SavedKind : uint32_t {
+  kNone = 0,  ///< no geometry has this number
+  kTriangleMesh = 1,
+  kInstances = 2,
+  kSpheres = 3,
+  kDiscs = 4,
+  kCurves = 5,
+  kMovingMesh = 6,
+  kMovingInstances = 7
 };
-static_assert(sizeof(MeshRecord) == 32);
-constexpr uint64_t kNoIndices = ~uint64_t{0};
+
+enum : uint32_t {
+  kCommitted = 1u << 0,  ///< the commit saw it
+  kEnabled = 1u << 1,    ///< the next one will
+  kHasIndices = 1u << 2,
+  kHasMasks = 1u << 3,  ///< one an instance
+  kHasOpacity = 1u << 4,
+  kHasOpacityIndices = 1u << 5,
+  kHasQuaternions = 1u << 6  ///< kiwami_quaternion_transform instead of matrices
+};
+
+/// A geometry of any kind. What its kind does not have is 0. Its buffers begin at multiples of 64.
+/// They are, of triangle meshes: vertices, indices, opacity maps, the map of each triangle; of
+/// moving ones: the vertices of all steps, indices; of shapes: points, normals (discs), indices
+/// (curves); of instances: matrices, indices of scenes, masks; of moving ones the same, with the
+/// transforms of all steps, step after step.
+struct GeometryRecord {
+  uint32_t kind;  ///< SavedKind
+  uint32_t flags;
+  uint32_t mask;
+  uint32_t primitive_count;  ///< triangles, shapes or instances
+  uint64_t point_count;      ///< vertices (of one step) or points
+  uint32_t scene_count;      ///< that instances show
+  uint32_t step_count;
+  float time_begin, time_end;
+  uint32_t opacity_level;
+  uint32_t opacity_format;
+  uint64_t opacity_map_count;
+  uint64_t reserved;
+};
+static_assert(sizeof(GeometryRecord) == 64);
+
+/// Of the instances of a scene that were committed.
+struct InstancesRecord {
+  float bounds_min[3];
+  float bounds_max[3];
+  float far_origin;
+  uint32_t rebraid_mode;  ///< KIWAMI_REBRAID_*
+  double rebraid_budget;
+  double error_per_origin, error_fixed;  ///< HitError
+};
+static_assert(sizeof(InstancesRecord) == 56);
+
+/// Of those that move.
+struct MovingInstancesRecord {
+  float bounds_min[3];
+  float bounds_max[3];
+  float far_origin;
+  uint32_t reserved;
+  double error_per_origin, error_fixed;  ///< HitError
+};
+static_assert(sizeof(MovingInstancesRecord) == 48);
+
+/// A set of lights. Set 0 is the one that is saved; those that its instances show follow.
+struct LightSetRecord {
+  uint32_t width;
+  uint32_t builder;  ///< KIWAMI_LIGHT_BUILDER_*
+  uint32_t flags;    ///< KIWAMI_LIGHT_TREE_*
+  float distant_probability;
+  uint32_t node_count;
+  uint32_t reserved;
+  double build_seconds;
+};
+static_assert(sizeof(LightSetRecord) == 32);
+
+struct SavedLightInstance {
+  uint32_t set;
+  float power_scale;
+  float local_to_world[12];
+  uint64_t link_mask;
+};
+static_assert(sizeof(SavedLightInstance) == 64);
 
 struct ParameterRecord {
   uint32_t parameter;  ///< KIWAMI_PARAMETER_*; kOptimizer: value is one of KIWAMI_OPTIMIZER_*

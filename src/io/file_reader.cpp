@@ -18,12 +18,16 @@ template <typename... Values>
   }
 }
 
-/// The versions of sections that this library reads: all are of version 1.
-constexpr uint32_t kSectionVersion = 1;
-
 bool is_known(uint32_t type) {
   return type >= static_cast<uint32_t>(SectionType::kScene) &&
-         type <= static_cast<uint32_t>(SectionType::kBoxes);
+         type <= static_cast<uint32_t>(SectionType::kMovingArrays);
+}
+
+const char* name_of_kind(uint32_t kind) {
+  return kind == KIWAMI_FILE_SCENE    ? "scene"
+         : kind == KIWAMI_FILE_BVH    ? "tree"
+         : kind == KIWAMI_FILE_LIGHTS ? "set of lights"
+                                      : "thing of a newer library";
 }
 
 }  // namespace
@@ -63,7 +67,7 @@ SectionEntry FileReader::entry(uint32_t number) const {
   return entry;
 }
 
-void FileReader::check_directory() const {
+void FileReader::check_directory() {
   if (header_.section_count > (size_ - sizeof(Header)) / sizeof(SectionEntry)) {
     fail("the directory has %u sections, expected at most the %zu that the file has room for",
          header_.section_count, (size_ - sizeof(Header)) / sizeof(SectionEntry));
@@ -74,17 +78,49 @@ void FileReader::check_directory() const {
   }
   uint64_t end = sizeof(Header) + directory_bytes;
   for (uint32_t i = 0; i < header_.section_count; ++i) {
+    check_place(i, end);
     const SectionEntry section = entry(i);
-    if (section.offset < end || section.offset > size_ || section.bytes > size_ - section.offset) {
-      fail("section %u has %llu bytes from byte %llu on, expected some from byte %llu to %zu", i,
-           ull{section.bytes}, ull{section.offset}, ull{end}, size_);
-    }
-    if (section.offset % kSectionAlignment != 0) {
-      fail("section %u begins at byte %llu, expected a multiple of %zu", i, ull{section.offset},
-           kSectionAlignment);
-    }
     end = section.offset + section.bytes;
+    // So the scenes are not more than the sections, and those of one are found quickly.
+    const uint32_t least = scene_count_ == 0 ? 0 : scene_count_ - 1;
+    const uint32_t most = header_.kind == KIWAMI_FILE_BVH ? 0 : scene_count_;
+    if (section.scene < least || section.scene > most) {
+      fail("section %u is of scene %u, expected %u to %u", i, section.scene, least, most);
+    }
+    if (section.scene == scene_count_) ++scene_count_;
   }
+}
+
+void FileReader::check_place(uint32_t number, uint64_t end) const {
+  const SectionEntry section = entry(number);
+  if (section.offset < end || section.offset > size_ || section.bytes > size_ - section.offset) {
+    fail("section %u has %llu bytes from byte %llu on, expected some from byte %llu to %zu", number,
+         ull{section.bytes}, ull{section.offset}, ull{end}, size_);
+  }
+  if (section.offset % kSectionAlignment != 0) {
+    fail("section %u begins at byte %llu, expected a multiple of %zu", number, ull{section.offset},
+         kSectionAlignment);
+  }
+}
+
+uint32_t FileReader::first_entry_of(uint32_t scene) const {
+  uint32_t low = 0, high = header_.section_count;
+  while (low < high) {
+    const uint32_t middle = low + (high - low) / 2;
+    if (entry(middle).scene < scene) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+bool FileReader::has(SectionType type) const {
+  for (uint32_t i = 0; i < header_.section_count; ++i) {
+    if (entry(i).type == static_cast<uint32_t>(type)) return true;
+  }
+  return false;
 }
 
 uint32_t FileReader::first_unknown() const {
@@ -98,13 +134,12 @@ uint32_t FileReader::first_unknown() const {
 
 void FileReader::check_kind(uint32_t kind) const {
   if (!is_known_version(header_)) {
-    fail("the file is of format version %u, expected %d: a newer library wrote it",
-         header_.format_version, KIWAMI_FILE_FORMAT_VERSION);
+    fail("the file is of format version %u, expected %d: %s library wrote it",
+         header_.format_version, KIWAMI_FILE_FORMAT_VERSION,
+         header_.format_version > KIWAMI_FILE_FORMAT_VERSION ? "a newer" : "an older");
   }
   if (header_.kind != kind) {
-    fail("the file holds a %s, expected a %s",
-         header_.kind == KIWAMI_FILE_SCENE ? "scene" : "tree or something newer",
-         kind == KIWAMI_FILE_SCENE ? "scene" : "tree");
+    fail("the file holds a %s, expected a %s", name_of_kind(header_.kind), name_of_kind(kind));
   }
   const uint32_t unknown = first_unknown();
   if (unknown == header_.section_count) return;
@@ -125,9 +160,11 @@ void FileReader::check_sums(Memory& memory, const Parallel& parallel) const {
   }
 }
 
-std::span<const unsigned char> FileReader::section(SectionType type, size_t element_size) const {
-  for (uint32_t i = 0; i < header_.section_count; ++i) {
+std::span<const unsigned char> FileReader::section(SectionType type, uint32_t scene,
+                                                   size_t element_size) const {
+  for (uint32_t i = first_entry_of(scene); i < header_.section_count; ++i) {
     const SectionEntry section = entry(i);
+    if (section.scene != scene) break;
     if (section.type != static_cast<uint32_t>(type)) continue;
     if (section.version != kSectionVersion || section.bytes % element_size != 0) {
       fail(
@@ -137,13 +174,13 @@ std::span<const unsigned char> FileReader::section(SectionType type, size_t elem
     }
     return {data_ + section.offset, static_cast<size_t>(section.bytes)};
   }
-  fail("the file has no section of type %u", static_cast<uint32_t>(type));
+  return {};
 }
 
-void FileReader::check_single(SectionType type, size_t count) const {
-  if (count != 1) {
-    fail("the section of type %u has %zu elements, expected 1", static_cast<uint32_t>(type), count);
-  }
+void FileReader::check_single(SectionType type, uint32_t scene, size_t count) const {
+  if (count == 1) return;
+  fail("scene %u has %zu elements of type %u, expected 1", scene, count,
+       static_cast<uint32_t>(type));
 }
 
 }  // namespace kiwami::file

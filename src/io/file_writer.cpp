@@ -17,8 +17,9 @@ uint64_t aligned(uint64_t offset, uint64_t alignment) {
   return (offset + alignment - 1) / alignment * alignment;
 }
 
+constexpr unsigned char kZeros[kPageAlignment] = {};
+
 void write_zeros(Sink& sink, uint64_t count) {
-  constexpr unsigned char kZeros[kPageAlignment] = {};
   for (; count != 0; count -= std::min<uint64_t>(count, sizeof kZeros)) {
     sink.write(kZeros, static_cast<size_t>(std::min<uint64_t>(count, sizeof kZeros)));
   }
@@ -26,11 +27,12 @@ void write_zeros(Sink& sink, uint64_t count) {
 
 }  // namespace
 
-void FileWriter::begin_section(SectionType type, uint32_t version, size_t alignment) {
+void FileWriter::begin_section(SectionType type, uint32_t scene, size_t alignment) {
   SectionEntry entry{};
   entry.type = static_cast<uint32_t>(type);
-  entry.version = version;
+  entry.version = kSectionVersion;
   entry.flags = kSectionRequired;
+  entry.scene = scene;
   sections_.push_back({entry, alignment, pieces_.size(), pieces_.size()});
 }
 
@@ -39,6 +41,11 @@ void FileWriter::add(const void* data, size_t size, size_t stride, size_t count)
   pieces_.push_back({static_cast<const unsigned char*>(data), size, stride, count});
   sections_.back().end_piece = pieces_.size();
   sections_.back().entry.bytes += uint64_t{size} * count;
+}
+
+void FileWriter::align() {
+  const uint64_t bytes = sections_.back().entry.bytes;
+  add(kZeros, static_cast<size_t>(aligned(bytes, kSectionAlignment) - bytes));
 }
 
 template <typename Take>

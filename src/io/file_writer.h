@@ -15,13 +15,23 @@ class FileWriter {
   FileWriter(uint32_t kind, Memory& memory, const Parallel& parallel)
       : memory_(memory), parallel_(parallel), kind_(kind), sections_(memory), pieces_(memory) {}
 
-  void begin_section(SectionType type, uint32_t version, size_t alignment = kSectionAlignment);
+  void begin_section(SectionType type, uint32_t scene = 0, size_t alignment = kSectionAlignment);
 
   /// Adds count elements of size bytes, stride bytes apart, which are written without gaps.
   void add(const void* data, size_t size, size_t stride, size_t count);
   template <typename T>
   void add(const T* data, size_t count) {
     add(data, sizeof(T), sizeof(T), count);
+  }
+
+  /// Fills the section with zeros up to a multiple of kSectionAlignment.
+  void align();
+  /// A section of such an array, unless it is empty.
+  template <typename Elements>
+  void add_section(SectionType type, uint32_t scene, const Elements& elements) {
+    if (elements.size() == 0) return;
+    begin_section(type, scene);
+    add(elements.data(), elements.size());
   }
 
   /// The size of the file. Nothing may be added after it.

@@ -7,8 +7,8 @@
 
 namespace kiwami {
 
-/// Saves what was committed, and the parameters of the next commit; returns the file's size. Throws
-/// Error.
+/// Saves what was committed, with the scenes that it shows, what is attached or disabled since, and
+/// the parameters of the next commit; returns the file's size. Throws Error.
 uint64_t save_scene(const Scene& scene, const CommittedScene& committed,
                     const kiwami_save_desc& desc);
 

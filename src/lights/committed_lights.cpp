@@ -81,7 +81,7 @@ CommittedLights* CommittedLights::create(Device& device, const LightInput& input
 }
 
 CommittedLights* CommittedLights::create(Device& device, const LightInput& input,
-                                         const CommittedLights& shape) {
+                                         const LightShape& shape) {
   return make_object<CommittedLights>(device.memory(), device, input, &shape);
 }
 
@@ -90,42 +90,27 @@ void CommittedLights::destroy(CommittedLights* lights) noexcept {
   destroy_object(device->memory(), lights);
 }
 
-CommittedLights::CommittedLights(Device& device, const LightInput& input,
-                                 const CommittedLights* shape)
-    : device_(device) {
+CommittedLights::CommittedLights(Device& device, const LightInput& input, const LightShape* shape)
+    : device_(device), set_(input.set) {
   const auto start = std::chrono::steady_clock::now();
   Memory& memory = device.memory();
   tree_.width = input.width;
-  Array<InstanceLeaf> instance_leaves(memory, input.instance_count);
+  Array<InstanceLeaf> instance_leaves(memory, input.instance_count());
   place_instances(input, instance_leaves);
-  const LightLeaves leaves{input.lights, instance_leaves.data(), input.light_count,
-                           input.instance_count};
+  const LightLeaves leaves{input.set.lights.data(), instance_leaves.data(), input.light_count(),
+                           input.instance_count()};
   build(input, leaves, shape);
-  user_ids_ = Array<uint32_t>(memory, input.light_count);
-  if (input.light_count) {
-    std::memcpy(user_ids_.data(), input.user_ids, user_ids_.bytes());
-  }
   collect_distant(input);
   weigh(input, leaves);
   describe(input);
-  // Last, since nothing releases them if something above fails.
-  held_ = Array<CommittedLights*>(memory, input.instance_count);
-  for (uint32_t i = 0; i < input.instance_count; ++i) {
-    held_[i] = input.instances[i].lights;
-    held_[i]->retain();
-  }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   info_.build_seconds = seconds.count();
 }
 
-CommittedLights::~CommittedLights() {
-  for (CommittedLights* lights : held_) lights->release();
-}
-
 void CommittedLights::place_instances(const LightInput& input, Array<InstanceLeaf>& leaves) {
-  instance_views_ = Array<LightInstanceView>(device_->memory(), input.instance_count);
-  for (uint32_t i = 0; i < input.instance_count; ++i) {
-    const LightInstance& instance = input.instances[i];
+  instance_views_ = Array<LightInstanceView>(device_->memory(), input.instance_count());
+  for (uint32_t i = 0; i < input.instance_count(); ++i) {
+    const LightInstance& instance = input.set.instances[i];
     LightInstanceView& view = instance_views_[i];
     invert(instance.local_to_world, view);
     view.link_mask = instance.link_mask;
@@ -140,13 +125,12 @@ void CommittedLights::place_instances(const LightInput& input, Array<InstanceLea
 }
 
 void CommittedLights::build(const LightInput& input, const LightLeaves& leaves,
-                            const CommittedLights* shape) {
+                            const LightShape* shape) {
   Memory& memory = device_->memory();
   if (shape) {
-    check_shape(shape->links_, leaves, shape->info_.light_count + shape->info_.instance_count,
-                memory);
-    links_ = LightLinks(memory, shape->links_.size());
-    if (!links_.empty()) std::memcpy(links_.data(), shape->links_.data(), links_.bytes());
+    check_shape(shape->links, leaves, shape->leaf_count, memory);
+    links_ = LightLinks(memory, shape->links.size());
+    if (!links_.empty()) std::memcpy(links_.data(), shape->links.data(), links_.bytes());
   } else {
     Array<uint32_t> numbers = leaf_numbers_of(leaves, memory);
     if (!numbers.empty()) {
@@ -158,7 +142,7 @@ void CommittedLights::build(const LightInput& input, const LightLeaves& leaves,
   has_roulette_ = input.has_roulette;
   if (links_.empty()) return;
   const Array<LightCluster> clusters = clusters_of(links_, leaves, memory);
-  tree_ = shape ? rewritten(shape->tree_, links_, clusters, memory)
+  tree_ = shape ? rewritten(shape->tree, links_, clusters, leaves.size(), memory)
                 : contract(links_, clusters, input.width, leaves.size(), memory);
   if (has_roulette_) perfect_tree_ = PerfectLightTree(links_, clusters, memory);
   const LightCluster& root = clusters[0];
@@ -180,8 +164,8 @@ void CommittedLights::build(const LightInput& input, const LightLeaves& leaves,
 void CommittedLights::collect_distant(const LightInput& input) {
   GrowingArray<DistantLightView> found(device_->memory());
   double greatest = 0.0;
-  for (uint32_t i = 0; i < input.light_count; ++i) {
-    const LightRecord& light = input.lights[i];
+  for (uint32_t i = 0; i < input.light_count(); ++i) {
+    const LightRecord& light = input.set.lights[i];
     if (light.kind != LightKind::kDistant && light.kind != LightKind::kEnvironment) continue;
     DistantLightView view{};
     if (light.kind == LightKind::kDistant) {
@@ -210,8 +194,8 @@ void CommittedLights::weigh(const LightInput& input, const LightLeaves& leaves) 
   Memory& memory = device_->memory();
   Array<double> powers(memory, leaves.size());
   for (uint32_t leaf = 0; leaf < leaves.size(); ++leaf) {
-    const bool is_empty =
-        leaf >= input.light_count && leaves.instances[leaf - input.light_count].light_count == 0;
+    const bool is_empty = leaf >= input.light_count() &&
+                          leaves.instances[leaf - input.light_count()].light_count == 0;
     const bool is_local = leaves[leaf].kind == LightKind::kLocal && !is_empty;
     powers[leaf] = is_local ? static_cast<double>(leaves[leaf].power) : 0.0;
   }
@@ -243,7 +227,7 @@ kiwami_light_choice CommittedLights::choose_by_power(double random) const {
     AliasTable::Draw draw = leaf_powers_.draw(std::min(rest, 1.0 - 0x1p-53));
     if (draw.index >= view_.light_count) {
       instance_id = draw.index - view_.light_count;
-      lights = held_[instance_id];
+      lights = &instance(instance_id);
       draw = lights->leaf_powers_.draw(draw.random);
     }
     light_id = draw.index;
@@ -252,7 +236,7 @@ kiwami_light_choice CommittedLights::choose_by_power(double random) const {
     return {KIWAMI_INVALID_ID, KIWAMI_INVALID_ID, 0, 0.0f, 0.0};
   }
   const double probability = probability_by_power({light_id, instance_id});
-  return {light_id, instance_id, lights->user_ids_[light_id],
+  return {light_id, instance_id, lights->set_->user_ids[light_id],
           std::max(static_cast<float>(probability), std::numeric_limits<float>::min()), number};
 }
 
@@ -265,8 +249,8 @@ double CommittedLights::probability_by_power(const kiwami_light_name& name) cons
     }
     return leaf_powers_.empty() ? 0.0 : (1.0 - distant) * leaf_powers_.probability(name.light_id);
   }
-  if (name.instance_id >= held_.size() || leaf_powers_.empty()) return 0.0;
-  const CommittedLights& inner = *held_[name.instance_id];
+  if (name.instance_id >= view_.instance_count || leaf_powers_.empty()) return 0.0;
+  const CommittedLights& inner = instance(name.instance_id);
   if (name.light_id >= inner.view_.light_count || inner.leaf_powers_.empty()) return 0.0;
   return (1.0 - distant) * leaf_powers_.probability(view_.light_count + name.instance_id) *
          inner.leaf_powers_.probability(name.light_id);
@@ -275,12 +259,12 @@ double CommittedLights::probability_by_power(const kiwami_light_name& name) cons
 void CommittedLights::describe(const LightInput& input) {
   view_.nodes = tree_.nodes.data();
   view_.node_count = tree_.node_count;
-  view_.light_count = input.light_count;
+  view_.light_count = input.light_count();
   view_.leaf_slots = tree_.leaf_slots.data();
   view_.parent_slots = tree_.parent_slots.data();
-  view_.user_ids = user_ids_.data();
+  view_.user_ids = set_->user_ids.data();
   view_.instances = instance_views_.data();
-  view_.instance_count = input.instance_count;
+  view_.instance_count = input.instance_count();
   view_.distant = distant_.data();
   view_.distant_count = static_cast<uint32_t>(distant_.size());
   const double count = static_cast<double>(distant_.size());
@@ -289,16 +273,15 @@ void CommittedLights::describe(const LightInput& input) {
                                   : count / (count + 1.0);
   info_.struct_size = sizeof(info_);
   info_.width = tree_.width;
-  info_.light_count = input.light_count;
-  info_.instance_count = input.instance_count;
+  info_.light_count = input.light_count();
+  info_.instance_count = input.instance_count();
   info_.distant_count = view_.distant_count;
   info_.node_count = tree_.node_count;
   info_.depth = tree_.depth;
   info_.cost = tree_.cost;
-  info_.bytes = sizeof(*this) + links_.bytes() + tree_.bytes() + user_ids_.bytes() +
-                distant_.bytes() + instance_views_.bytes() + leaf_powers_.bytes() +
-                perfect_tree_.bytes() + distant_powers_.bytes() +
-                input.instance_count * sizeof(CommittedLights*);
+  info_.bytes = sizeof(*this) + links_.bytes() + tree_.bytes() + distant_.bytes() +
+                instance_views_.bytes() + leaf_powers_.bytes() + perfect_tree_.bytes() +
+                distant_powers_.bytes();
 }
 
 }  // namespace kiwami

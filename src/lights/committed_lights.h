@@ -4,32 +4,29 @@
 #include "core/device.h"
 #include "core/object.h"
 #include "lights/alias_table.h"
+#include "lights/light_set.h"
 #include "lights/perfect_light_tree.h"
 #include "lights/wide_light_tree.h"
 
 namespace kiwami {
 
-class CommittedLights;
-
-/// An instance as it was described. Who keeps one holds its lights.
-struct LightInstance {
-  CommittedLights* lights;
-  float local_to_world[12];
-  float power_scale;
-  uint64_t link_mask;
-};
-
-/// What a set of lights is, for a tree over it. The arrays are the caller's.
+/// A set of lights, and how a tree is built over it.
 struct LightInput {
-  const LightRecord* lights;
-  const uint32_t* user_ids;
-  const LightInstance* instances;
-  uint32_t light_count;
-  uint32_t instance_count;
+  LightSet& set;
   uint32_t width;
   uint32_t builder;
   float distant_probability;
   bool has_roulette;  ///< whether the tree for it is built, too
+
+  uint32_t light_count() const { return static_cast<uint32_t>(set.lights.size()); }
+  uint32_t instance_count() const { return static_cast<uint32_t>(set.instances.size()); }
+};
+
+/// The shape of a tree: which clusters there are, and which of them are the slots of which node.
+struct LightShape {
+  const LightLinks& links;
+  const WideLightTree& tree;  ///< width, counts and slot_clusters alone
+  uint32_t leaf_count;        ///< lights and instances
 };
 
 /// A tree over lights with all that kernels read, never changed again: so an instance shows the
@@ -40,16 +37,19 @@ class CommittedLights : public Object<CommittedLights> {
   static CommittedLights* create(Device& device, const LightInput& input);
   /// The same lights, changed, in the shape of an earlier tree. Throws Error(INVALID_STATE) where
   /// the shape does not fit them.
-  static CommittedLights* create(Device& device, const LightInput& input,
-                                 const CommittedLights& shape);
+  static CommittedLights* create(Device& device, const LightInput& input, const LightShape& shape);
   static void destroy(CommittedLights* lights) noexcept;
 
-  CommittedLights(Device& device, const LightInput& input, const CommittedLights* shape);
-  ~CommittedLights();
+  CommittedLights(Device& device, const LightInput& input, const LightShape* shape);
 
   Device& device() const { return *device_; }
+  /// What it was made of, unchanged since.
+  const LightSet& set() const { return *set_; }
+  LightShape shape() const { return {links_, tree_, info_.light_count + info_.instance_count}; }
   const LightTreeView& view() const { return view_; }
   const kiwami_light_tree_info& info() const { return info_; }
+  /// Of a tree that was built before it was saved.
+  void set_build_seconds(double seconds) { info_.build_seconds = seconds; }
   uint32_t width() const { return tree_.width; }
   /// Of all lights in the tree together, as a leaf of another; light_count 0 where there is none.
   const InstanceLeaf& summary() const { return summary_; }
@@ -70,7 +70,8 @@ class CommittedLights : public Object<CommittedLights> {
                              const RouletteRules& rules, const kiwami_light_name& name) const;
 
  private:
-  void build(const LightInput& input, const LightLeaves& leaves, const CommittedLights* shape);
+  const CommittedLights& instance(uint32_t number) const { return *set_->instances[number].lights; }
+  void build(const LightInput& input, const LightLeaves& leaves, const LightShape* shape);
   void collect_distant(const LightInput& input);
   void place_instances(const LightInput& input, Array<InstanceLeaf>& leaves);
   void describe(const LightInput& input);
@@ -80,13 +81,11 @@ class CommittedLights : public Object<CommittedLights> {
   double roulette_strength(const RouletteReceiver& receiver, const RouletteRules& rules) const;
 
   Reference<Device> device_;
+  Reference<LightSet> set_;
   LightLinks links_;
   WideLightTree tree_;
-  Array<uint32_t> user_ids_;
   Array<DistantLightView> distant_;
   Array<LightInstanceView> instance_views_;
-  /// The trees of instances, each held once per instance.
-  Array<CommittedLights*> held_;
   bool has_roulette_ = false;
   PerfectLightTree perfect_tree_;
   AliasTable leaf_powers_;     ///< of lights and instances

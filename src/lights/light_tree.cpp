@@ -98,39 +98,44 @@ LightTree::LightTree(Device& device, const kiwami_light_tree_desc& desc)
       flags_(desc.flags),
       distant_probability_(desc.distant_probability),
       kernels_(light_kernels_of(device.isa(), width_)),
-      lights_(device.memory()),
-      user_ids_(device.memory()),
-      instances_(device.memory()) {}
+      set_(LightSet::create(device)) {}
 
-LightTree::~LightTree() {
-  for (size_t i = 0; i < instances_.size(); ++i) instances_[i].lights->release();
+/// The set, to be changed: a copy where what was committed holds it.
+LightSet& LightTree::own_set(size_t more_lights, size_t more_instances) {
+  if (set_->is_shared()) {
+    set_ = LightSet::copy_of(*set_, more_lights, more_instances);
+  } else {
+    set_->lights.reserve(set_->lights.size() + more_lights);
+    set_->user_ids.reserve(set_->user_ids.size() + more_lights);
+    set_->instances.reserve(set_->instances.size() + more_instances);
+  }
+  return *set_;
 }
 
 void LightTree::check_new(size_t count) const {
-  if (count > kMaxLightCount - lights_.size()) {
+  if (count > kMaxLightCount - set_->lights.size()) {
     throw Error(KIWAMI_ERROR_TOO_LARGE, "%zu lights are added to %zu, expected at most 2^26 in all",
-                count, lights_.size());
+                count, set_->lights.size());
   }
 }
 
 void LightTree::check_present(uint32_t first, size_t count) const {
-  if (first > lights_.size() || count > lights_.size() - first) {
+  if (first > set_->lights.size() || count > set_->lights.size() - first) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT,
                 "first is %u and count is %zu, expected lights of the %zu that were added", first,
-                count, lights_.size());
+                count, set_->lights.size());
   }
 }
 
 uint32_t LightTree::add_lights(const unsigned char* lights, size_t stride, size_t count) {
   check_new(count);
   for (size_t i = 0; i < count; ++i) record_of(read<kiwami_light>(lights + i * stride), i);
-  const auto first = static_cast<uint32_t>(lights_.size());
-  lights_.reserve(first + count);
-  user_ids_.reserve(first + count);
+  LightSet& set = own_set(count, 0);
+  const auto first = static_cast<uint32_t>(set.lights.size());
   for (size_t i = 0; i < count; ++i) {
     const auto light = read<kiwami_light>(lights + i * stride);
-    lights_.push_back(record_of(light, i));
-    user_ids_.push_back(light.user_id);
+    set.lights.push_back(record_of(light, i));
+    set.user_ids.push_back(light.user_id);
   }
   return first;
 }
@@ -138,35 +143,36 @@ uint32_t LightTree::add_lights(const unsigned char* lights, size_t stride, size_
 uint32_t LightTree::add_mesh(const LightMesh& mesh) {
   check_new(mesh.triangle_count);
   for (size_t i = 0; i < mesh.triangle_count; ++i) triangle_of(mesh, i);
-  const auto first = static_cast<uint32_t>(lights_.size());
-  lights_.reserve(first + mesh.triangle_count);
-  user_ids_.reserve(first + mesh.triangle_count);
+  LightSet& set = own_set(mesh.triangle_count, 0);
+  const auto first = static_cast<uint32_t>(set.lights.size());
   for (uint32_t i = 0; i < mesh.triangle_count; ++i) {
-    lights_.push_back(triangle_of(mesh, i));
-    user_ids_.push_back(mesh.user_id + i * mesh.user_id_step);
+    set.lights.push_back(triangle_of(mesh, i));
+    set.user_ids.push_back(mesh.user_id + i * mesh.user_id_step);
   }
   return first;
 }
 
 uint32_t LightTree::add_instance(const LightInstance& instance) {
-  if (instances_.size() == kMaxInstanceCount) {
+  if (set_->instances.size() == kMaxInstanceCount) {
     throw Error(KIWAMI_ERROR_TOO_LARGE, "the set has %zu instances, expected fewer than 2^20",
-                instances_.size());
+                set_->instances.size());
   }
   check(instance);
-  instances_.push_back(instance);
+  LightSet& set = own_set(0, 1);
+  set.instances.push_back(instance);
   instance.lights->retain();
-  return static_cast<uint32_t>(instances_.size() - 1);
+  return static_cast<uint32_t>(set.instances.size() - 1);
 }
 
 void LightTree::set_lights(uint32_t first, const unsigned char* lights, size_t stride,
                            size_t count) {
   check_present(first, count);
   for (size_t i = 0; i < count; ++i) record_of(read<kiwami_light>(lights + i * stride), i);
+  LightSet& set = own_set(0, 0);
   for (size_t i = 0; i < count; ++i) {
     const auto light = read<kiwami_light>(lights + i * stride);
-    lights_[first + i] = record_of(light, i);
-    user_ids_[first + i] = light.user_id;
+    set.lights[first + i] = record_of(light, i);
+    set.user_ids[first + i] = light.user_id;
   }
 }
 
@@ -176,30 +182,52 @@ void LightTree::set_powers(uint32_t first, const unsigned char* powers, size_t s
   for (size_t i = 0; i < count; ++i) {
     checked_amount(read<float>(powers + i * stride), "powers", i);
   }
-  for (size_t i = 0; i < count; ++i) lights_[first + i].power = read<float>(powers + i * stride);
+  LightSet& set = own_set(0, 0);
+  for (size_t i = 0; i < count; ++i) {
+    set.lights[first + i].power = read<float>(powers + i * stride);
+  }
 }
 
 void LightTree::set_instance(uint32_t number, const LightInstance& instance) {
-  if (number >= instances_.size()) {
+  if (number >= set_->instances.size()) {
     throw Error(KIWAMI_ERROR_INVALID_ARGUMENT, "instance_id is %u, expected one below %zu", number,
-                instances_.size());
+                set_->instances.size());
   }
   check(instance);
+  LightSet& set = own_set(0, 0);
   instance.lights->retain();
-  instances_[number].lights->release();
-  instances_[number] = instance;
+  set.instances[number].lights->release();
+  set.instances[number] = instance;
 }
 
 LightInput LightTree::input() const {
-  return {lights_.data(),
-          user_ids_.data(),
-          instances_.data(),
-          static_cast<uint32_t>(lights_.size()),
-          static_cast<uint32_t>(instances_.size()),
-          width_,
-          builder_,
-          distant_probability_,
+  return {*set_, width_, builder_, distant_probability_,
           (flags_ & KIWAMI_LIGHT_TREE_WITH_ROULETTE) != 0};
+}
+
+kiwami_light_tree_desc LightTree::desc() const {
+  kiwami_light_tree_desc desc{};
+  desc.struct_size = sizeof desc;
+  desc.width = width_;
+  desc.builder = builder_;
+  desc.distant_probability = distant_probability_;
+  desc.flags = flags_;
+  return desc;
+}
+
+void LightTree::restore_lights(std::span<const LightRecord> lights,
+                               std::span<const uint32_t> user_ids) {
+  check_new(lights.size());
+  LightSet& set = own_set(lights.size(), 0);
+  for (size_t i = 0; i < lights.size(); ++i) {
+    set.lights.push_back(lights[i]);
+    set.user_ids.push_back(user_ids[i]);
+  }
+}
+
+void LightTree::restore(const LightShape& shape, double build_seconds) {
+  committed_ = Reference<CommittedLights>::adopt(CommittedLights::create(*device_, input(), shape));
+  committed_->set_build_seconds(build_seconds);
 }
 
 void LightTree::commit() {
@@ -211,14 +239,14 @@ void LightTree::refit() {
     throw Error(KIWAMI_ERROR_INVALID_STATE,
                 "tree was never committed, expected a successful kiwami_light_tree_commit before");
   }
-  committed_ =
-      Reference<CommittedLights>::adopt(CommittedLights::create(*device_, input(), *committed_));
+  committed_ = Reference<CommittedLights>::adopt(
+      CommittedLights::create(*device_, input(), committed_->shape()));
 }
 
 kiwami_light_tree_info LightTree::info() const {
   kiwami_light_tree_info info = committed_->info();
-  info.bytes += sizeof(*this) + lights_.size() * (sizeof(LightRecord) + sizeof(uint32_t)) +
-                instances_.size() * sizeof(LightInstance);
+  info.bytes += sizeof(*this) + set_->bytes();
+  if (set_.get() != &committed_->set()) info.bytes += committed_->set().bytes();
   return info;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "kernels/light_kernels.h"
 #include "lights/committed_lights.h"
 
@@ -33,7 +35,6 @@ class LightTree : public Object<LightTree> {
   static void destroy(LightTree* tree) noexcept;
 
   LightTree(Device& device, const kiwami_light_tree_desc& desc);
-  ~LightTree();
 
   // All throw Error, and then nothing has changed.
 
@@ -46,9 +47,17 @@ class LightTree : public Object<LightTree> {
   void set_instance(uint32_t number, const LightInstance& instance);
   void commit();
   void refit();
+  /// Takes over lights and their ids, of a set without any.
+  void restore_lights(std::span<const LightRecord> lights, std::span<const uint32_t> user_ids);
+  /// Takes the place of a commit: a tree of a shape that was saved, which fits.
+  void restore(const LightShape& shape, double build_seconds);
 
   Device& device() const { return *device_; }
+  /// What it was made with, but for the width, which is chosen by now.
+  kiwami_light_tree_desc desc() const;
   uint32_t width() const { return width_; }
+  /// The lights and instances as they are by now.
+  const LightSet& set() const { return *set_; }
   /// Null before the first commit.
   CommittedLights* committed() const { return committed_.get(); }
   const LightKernels& kernels() const { return kernels_; }
@@ -56,6 +65,7 @@ class LightTree : public Object<LightTree> {
 
  private:
   LightInput input() const;
+  LightSet& own_set(size_t more_lights, size_t more_instances);
   void check_new(size_t count) const;
   void check_present(uint32_t first, size_t count) const;
 
@@ -65,9 +75,7 @@ class LightTree : public Object<LightTree> {
   uint32_t flags_;
   float distant_probability_;
   LightKernels kernels_;
-  GrowingArray<LightRecord> lights_;
-  GrowingArray<uint32_t> user_ids_;
-  GrowingArray<LightInstance> instances_;  ///< whose lights are held
+  Reference<LightSet> set_;
   Reference<CommittedLights> committed_;
 };
 

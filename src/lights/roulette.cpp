@@ -134,7 +134,7 @@ uint32_t CommittedLights::play_roulette(const kiwami_light_receiver& given,
     const AliasTable::Draw draw =
         distant_powers_.draw(number_of_bits(mixed_bits(random, ~uint64_t{0})));
     const uint32_t id = distant_[draw.index].light_id;
-    choices[first++] = {id, KIWAMI_INVALID_ID, user_ids_[id],
+    choices[first++] = {id, KIWAMI_INVALID_ID, set_->user_ids[id],
                         above_zero(distant_powers_.probability(draw.index)), draw.random};
   }
   const uint32_t room = rules.max_count - first;
@@ -161,14 +161,14 @@ uint32_t CommittedLights::play_roulette(const kiwami_light_receiver& given,
 
 kiwami_light_choice CommittedLights::choice_of_leaf(const AcceptedLeaf& leaf, double random) const {
   if (leaf.leaf < view_.light_count) {
-    return {leaf.leaf, KIWAMI_INVALID_ID, user_ids_[leaf.leaf],
+    return {leaf.leaf, KIWAMI_INVALID_ID, set_->user_ids[leaf.leaf],
             above_zero(static_cast<double>(leaf.probability)), random};
   }
   const uint32_t instance = leaf.leaf - view_.light_count;
-  const CommittedLights& inner = *held_[instance];
+  const CommittedLights& inner = this->instance(instance);
   const AliasTable::Draw draw = inner.leaf_powers_.draw(random);
   const double own = inner.leaf_powers_.probability(draw.index);
-  return {draw.index, instance, inner.user_ids_[draw.index],
+  return {draw.index, instance, inner.set_->user_ids[draw.index],
           above_zero(static_cast<double>(leaf.probability) * own), draw.random};
 }
 
@@ -179,7 +179,8 @@ float CommittedLights::roulette_probability(const kiwami_light_receiver& given,
   RouletteReceiver receiver;
   if (!read_receiver(given, lobe, rules, receiver)) return 0.0f;
   const bool is_in_instance = name.instance_id != KIWAMI_INVALID_ID;
-  if (is_in_instance ? name.instance_id >= held_.size() : name.light_id >= view_.light_count) {
+  if (is_in_instance ? name.instance_id >= view_.instance_count
+                     : name.light_id >= view_.light_count) {
     return 0.0f;
   }
   for (uint32_t i = 0; i < distant_.size() && !is_in_instance; ++i) {
@@ -192,7 +193,7 @@ float CommittedLights::roulette_probability(const kiwami_light_receiver& given,
   const float probability = perfect_tree_.probability(receiver, strength, leaf);
   if (!(probability > 0.0f)) return 0.0f;
   if (!is_in_instance) return above_zero(probability);
-  const CommittedLights& inner = *held_[name.instance_id];
+  const CommittedLights& inner = instance(name.instance_id);
   if (name.light_id >= inner.view_.light_count || inner.leaf_powers_.empty()) return 0.0f;
   const double own = inner.leaf_powers_.probability(name.light_id);
   return own > 0.0 ? above_zero(static_cast<double>(probability) * own) : 0.0f;

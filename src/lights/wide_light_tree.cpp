@@ -208,14 +208,14 @@ WideLightTree contract(const LightLinks& links, const Array<LightCluster>& clust
 }
 
 WideLightTree rewritten(const WideLightTree& shape, const LightLinks& links,
-                        const Array<LightCluster>& clusters, Memory& memory) {
+                        const Array<LightCluster>& clusters, uint32_t leaf_count, Memory& memory) {
   WideLightTree tree;
   tree.width = shape.width;
   tree.node_count = shape.node_count;
   tree.depth = shape.depth;
   tree.slot_clusters = Array<uint32_t>(memory, shape.slot_clusters.size());
   std::memcpy(tree.slot_clusters.data(), shape.slot_clusters.data(), shape.slot_clusters.bytes());
-  write_any(links, clusters, shape.leaf_slots.size(), memory, tree);
+  write_any(links, clusters, leaf_count, memory, tree);
   return tree;
 }
 

@@ -37,7 +37,7 @@ WideLightTree contract(const LightLinks& links, const Array<LightCluster>& clust
 
 /// Writes the nodes of another tree's shape from other clusters.
 WideLightTree rewritten(const WideLightTree& shape, const LightLinks& links,
-                        const Array<LightCluster>& clusters, Memory& memory);
+                        const Array<LightCluster>& clusters, uint32_t leaf_count, Memory& memory);
 
 /// What LightTreeView says of the whole.
 void describe_root(const LightCluster& root, LightTreeView& view);

@@ -24,11 +24,12 @@ template <typename... Values>
 template <int N>
 class ReferenceChecker {
  public:
-  ReferenceChecker(const WideTree& tree, uint64_t id_count, Memory& memory)
+  ReferenceChecker(const WideTree& tree, const ReferenceLimits& limits, Memory& memory)
       : tree_(tree),
-        id_count_(id_count),
-        owned_slots_(memory, tree.node_count),
-        owned_lanes_(memory, tree.leaf_block_count),
+        limits_(limits),
+        owned_slots_(owned_array(limits.owned, tree.node_count, memory)),
+        owned_lanes_(owned_array(limits.owned ? limits.owned + tree.node_count : nullptr,
+                                 tree.leaf_block_count, memory)),
         stack_(memory) {
     owned_slots_.fill_zero();
     owned_lanes_.fill_zero();
@@ -56,12 +57,16 @@ class ReferenceChecker {
     uint32_t depth;  ///< nodes above it
   };
 
+  static Array<uint16_t> owned_array(uint16_t* given, uint64_t count, Memory& memory) {
+    return given ? Array<uint16_t>::borrow(given, count) : Array<uint16_t>(memory, count);
+  }
+
   void check_frame() const {
     for (int axis = 0; axis < 3; ++axis) {
       const float centre = tree_.view.centre[axis], bound = tree_.view.greatest_bound[axis];
-      // The greatest bound of what lies within KIWAMI_MAX_COORDINATE on both sides.
-      if (std::abs(centre) <= KIWAMI_MAX_COORDINATE && bound >= 0.0f &&
-          bound <= 2.0f * KIWAMI_MAX_COORDINATE) {
+      // The greatest bound of what lies within the limit on both sides, with some padding.
+      const float most = limits_.greatest_coordinate;
+      if (std::abs(centre) <= most && bound >= 0.0f && bound <= 2.0f * most) {
         continue;
       }
       fail(
@@ -134,9 +139,12 @@ class ReferenceChecker {
     const uint32_t* const ids = tree_.leaf_ids(index);
     for (uint32_t mask = owned_lanes_[index]; mask != 0; mask &= mask - 1) {
       const int lane = std::countr_zero(mask);
-      if (ids[lane] >= id_count_) {
-        fail("lane %d of leaf block %zu has id %u, expected less than %llu", lane, index, ids[lane],
-             ull{id_count_});
+      if (!contains(limits_.ids, ids[lane])) {
+        const IdRange last = limits_.ids.empty() ? IdRange{0, 0} : limits_.ids.back();
+        fail(
+            "lane %d of leaf block %zu has id %u, expected one of what the tree is over, less than "
+            "%llu",
+            lane, index, ids[lane], ull{last.first + last.count});
       }
       if (tree_.leaf_layout == LeafLayout::kTriangles) check_vertices(index, lane);
     }
@@ -147,7 +155,7 @@ class ReferenceChecker {
     for (int i = 0; i < 9; ++i) {
       const float value = leaf.position[i / 3][i % 3][lane];
       // False where it is NaN.
-      if (std::abs(value) <= KIWAMI_MAX_COORDINATE) continue;
+      if (std::abs(value) <= limits_.greatest_coordinate) continue;
       fail("lane %d of leaf block %zu has a vertex at %g on axis %d, expected at most 2^60", lane,
            index, static_cast<double>(value), i % 3);
     }
@@ -159,7 +167,7 @@ class ReferenceChecker {
   }
 
   const WideTree& tree_;
-  uint64_t id_count_;
+  ReferenceLimits limits_;
   Array<uint16_t> owned_slots_;
   Array<uint16_t> owned_lanes_;
   GrowingArray<Visit> stack_;
@@ -170,10 +178,17 @@ class ReferenceChecker {
 
 }  // namespace
 
-void check_references(const WideTree& tree, uint64_t id_count, Memory& memory,
+bool contains(std::span<const IdRange> ranges, uint64_t id) {
+  const auto next =
+      std::upper_bound(ranges.begin(), ranges.end(), id,
+                       [](uint64_t value, const IdRange& range) { return value < range.first; });
+  return next != ranges.begin() && id - (next - 1)->first < (next - 1)->count;
+}
+
+void check_references(const WideTree& tree, const ReferenceLimits& limits, Memory& memory,
                       const Parallel& parallel) {
   with_width(tree.width, [&](auto width) {
-    ReferenceChecker<decltype(width)::value>(tree, id_count, memory).run(parallel);
+    ReferenceChecker<decltype(width)::value>(tree, limits, memory).run(parallel);
   });
 }
 

@@ -7,9 +7,13 @@
 
 #include "api/api_support.h"
 #include "support/figures.h"
+#include "support/rich_lights.h"
+#include "support/rich_scene.h"
 
 namespace kiwami_api_tests {
 namespace {
+
+using namespace kiwami_tests;
 
 /// Writes a tree as compressed nodes.
 kiwami_result run_export(const kiwami_bvh* bvh) {
@@ -93,6 +97,89 @@ kiwami_result run_life(CountingAllocator& allocator, const Triangles& triangles)
   kiwami_device_release(device);
   return result;
 }
+
+/// Makes a distribution by each method and draws from it. Returns the first error.
+kiwami_result run_distributions(kiwami_device* device) {
+  const float weights[] = {1.0f, 0.0f, 3.0f, 0.25f, 7.0f};
+  kiwami_result result = KIWAMI_OK;
+  for (const uint32_t method : {uint32_t{KIWAMI_DISTRIBUTION_RADIX_TREE_FOREST},
+                                uint32_t{KIWAMI_DISTRIBUTION_ALIAS_TABLE}}) {
+    kiwami_distribution_desc desc;
+    kiwami_distribution* distribution = nullptr;
+    const double random = 0.5;
+    kiwami_draw draw;
+    kiwami_distribution_desc_init(&desc, sizeof desc);
+    desc.method = method;
+    desc.weights = weights;
+    desc.weight_count = 5;
+    if (result == KIWAMI_OK) result = kiwami_distribution_create(device, &desc, &distribution);
+    if (result == KIWAMI_OK) {
+      result = kiwami_distribution_sample(distribution, &random, 0, &draw, 0, 1);
+    }
+    kiwami_distribution_release(distribution);
+  }
+  return result;
+}
+
+/// Commits, refits and changes a set of lights with instances. Returns the first error.
+kiwami_result run_lights(kiwami_device* device) {
+  kiwami_light_tree* lights = nullptr;
+  const float power = 2.0f;
+  kiwami_result result = make_rich_lights(device, {4, 3, true}, &lights);
+  if (result == KIWAMI_OK) result = kiwami_light_tree_refit(lights);
+  if (result == KIWAMI_OK) result = kiwami_light_tree_set_powers(lights, 1, &power, 0, 1);
+  if (result == KIWAMI_OK) result = kiwami_light_tree_commit(lights);
+  kiwami_light_tree_release(lights);
+  return result;
+}
+
+/// Commits a scene of geometries of all kinds twice, by rays of its own. Returns the first error.
+kiwami_result run_kinds(kiwami_device* device) {
+  const kiwami_ray rays[] = {ray_along_z(0.1f, 0.2f), ray_along_z(-0.3f, 0.2f)};
+  kiwami_scene* scene = nullptr;
+  kiwami_result result = make_rich_scene(device, {kRichAll, 4, 3}, &scene);
+  if (result == KIWAMI_OK) {
+    result = kiwami_scene_set_parameter(scene, KIWAMI_PARAMETER_CONTRACTION,
+                                        KIWAMI_CONTRACTION_RAY_DISTRIBUTION);
+  }
+  if (result == KIWAMI_OK) result = kiwami_scene_set_representative_rays(scene, rays, 0, 2);
+  if (result == KIWAMI_OK) result = kiwami_scene_commit(scene);
+  if (result == KIWAMI_OK) result = kiwami_scene_validate(scene);
+  if (result == KIWAMI_OK) result = kiwami_scene_refit(scene);
+  kiwami_scene_release(scene);
+  return result;
+}
+
+/// Calls run with a device whose allocation `failure` and all after it fail.
+template <typename Run>
+void expect_survives_failures(Run&& run) {
+  size_t failure = 0;
+  for (kiwami_result result = KIWAMI_ERROR_OUT_OF_MEMORY; result != KIWAMI_OK; ++failure) {
+    CountingAllocator allocator;
+    kiwami_device_desc desc = default_device();
+    desc.thread_count = 1;
+    allocator.install(desc);
+    {
+      const Device device = make_device(desc);
+      allocator.first_failure = allocator.calls + failure;
+      result = run(device.get());
+      ASSERT_TRUE(result == KIWAMI_OK || result == KIWAMI_ERROR_OUT_OF_MEMORY) << last_error();
+    }
+    ASSERT_EQ(allocator.live_bytes, 0u) << failure;
+    ASSERT_EQ(allocator.live_blocks, 0u) << failure;
+    ASSERT_EQ(allocator.mismatches, 0u) << failure;
+  }
+  EXPECT_GT(failure, 5u);
+  kiwami_tests::print_figure("allocations failed, one run each", failure - 1);
+}
+
+TEST(Allocator, EveryFailureOfADistributionIsAnError) {
+  expect_survives_failures(run_distributions);
+}
+
+TEST(Allocator, EveryFailureOfASetOfLightsIsAnError) { expect_survives_failures(run_lights); }
+
+TEST(Allocator, EveryFailureOfASceneOfAllKindsIsAnError) { expect_survives_failures(run_kinds); }
 
 TEST(Allocator, GetsEveryByteBackInTheSizeItGave) {
   CountingAllocator allocator;

@@ -176,9 +176,7 @@ TEST(GuardedBuffers, OfFieldsAreTouchedAtTheirElementsAlone) {
   }
 }
 
-TEST(GuardedBuffers, OfFilesAreReadToTheirEndsAlone) {
-  const Device device = make_device();
-  const Scene scene = make_mixed_scene(device, 100, 8);
+void expect_files_are_read_to_their_ends_alone(const Device& device, const Scene& scene) {
   const Bytes file = saved(scene);
   const GuardedBuffer target(file.size(), Side::kEnd, 0);
   kiwami_save_desc save = default_save();
@@ -209,6 +207,15 @@ TEST(GuardedBuffers, OfFilesAreReadToTheirEndsAlone) {
     desc.size = size;
     Scene loaded;
     ASSERT_EQ(load(device, desc, loaded), KIWAMI_ERROR_INVALID_FILE) << size;
+  }
+}
+
+TEST(GuardedBuffers, OfFilesAreReadToTheirEndsAlone) {
+  const Device device = make_device();
+  expect_files_are_read_to_their_ends_alone(device, make_mixed_scene(device, 100, 8));
+  for (const uint32_t parts : {kiwami_tests::kRichShapes, kiwami_tests::kRichMotion,
+                               kiwami_tests::kRichTwoLevel, kiwami_tests::kRichAll}) {
+    expect_files_are_read_to_their_ends_alone(device, make_rich_scene(device, parts, 9, 8));
   }
 }
 

@@ -7,14 +7,6 @@
 namespace kiwami_api_tests {
 namespace {
 
-TEST_F(Instances, ScenesOfThemAreNotSaved) {
-  const Scene scene = scene_of({{child_.get()}, {}, {kIdentity}, {}});
-  kiwami_save_desc desc;
-  kiwami_save_desc_init(&desc, sizeof desc);
-  uint64_t bytes = 0;
-  EXPECT_EQ(kiwami_scene_save(scene.get(), &desc, &bytes), KIWAMI_ERROR_INVALID_STATE);
-}
-
 TEST_F(Instances, AreNoMeshesToBuildATreeOver) {
   const Geometry geometry = make({{child_.get()}, {}, {kIdentity}, {}});
   kiwami_bvh_desc desc;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -100,6 +101,12 @@ std::vector<std::string> TemporaryFolder::names() const {
   return names;
 }
 
+AlignedCopy::AlignedCopy(const Bytes& bytes) : storage_(bytes.size() + 64) {
+  const size_t shift = (64 - reinterpret_cast<uintptr_t>(storage_.data()) % 64) % 64;
+  data_ = storage_.data() + shift;
+  std::copy(bytes.begin(), bytes.end(), data_);
+}
+
 void write_file(const std::string& path, const Bytes& bytes) {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()),
@@ -110,6 +117,13 @@ void write_file(const std::string& path, const Bytes& bytes) {
 Bytes read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return Bytes(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+}
+
+Scene make_rich_scene(const Device& device, uint32_t parts, uint32_t size, uint32_t width) {
+  kiwami_scene* scene = nullptr;
+  EXPECT_EQ(kiwami_tests::make_rich_scene(device.get(), {parts, width, size}, &scene), KIWAMI_OK)
+      << last_error();
+  return Scene(scene);
 }
 
 Scene make_mixed_scene(const Device& device, uint32_t triangles, uint32_t width) {

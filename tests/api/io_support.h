@@ -7,6 +7,7 @@
 
 #include "api/api_support.h"
 #include "support/file_forger.h"
+#include "support/rich_scene.h"
 
 namespace kiwami_api_tests {
 
@@ -47,8 +48,22 @@ class TemporaryFolder {
   std::filesystem::path folder_;
 };
 
+/// A file in memory at a multiple of 64, as a caller would map it.
+class AlignedCopy {
+ public:
+  explicit AlignedCopy(const Bytes& bytes);
+  unsigned char* data() { return data_; }
+
+ private:
+  Bytes storage_;
+  unsigned char* data_;
+};
+
 void write_file(const std::string& path, const Bytes& bytes);
 Bytes read_file(const std::string& path);
+
+/// A scene of support/rich_scene.h.
+Scene make_rich_scene(const Device& device, uint32_t parts, uint32_t size, uint32_t width);
 
 /// A scene of several meshes with gaps between their numbers, one without indices, one masked, one
 /// with a bad vertex, from buffers with gaps.

@@ -39,21 +39,6 @@ void expect_same_scene(const Scene& a, const Scene& b) {
   EXPECT_EQ(info_of(a).build_seconds, info_of(b).build_seconds);
 }
 
-/// A file in memory at a multiple of 64, as a caller would map it.
-class AlignedCopy {
- public:
-  explicit AlignedCopy(const Bytes& bytes) : storage_(bytes.size() + 64) {
-    const size_t shift = (64 - reinterpret_cast<uintptr_t>(storage_.data()) % 64) % 64;
-    data_ = storage_.data() + shift;
-    std::memcpy(data_, bytes.data(), bytes.size());
-  }
-  unsigned char* data() { return data_; }
-
- private:
-  Bytes storage_;
-  unsigned char* data_;
-};
-
 TEST(SceneFile, ComesBackTheSameFromMemoryAtEveryWidth) {
   const Device device = make_device();
   for (const uint32_t width : {4u, 8u, 16u}) {
@@ -95,6 +80,21 @@ TEST(SceneFile, ComesBackTheSameFromAFile) {
     ASSERT_EQ(load(device, desc, loaded), KIWAMI_OK) << last_error();
     expect_same_scene(scene, loaded);
   }
+}
+
+/// Larger than what one task reads.
+TEST(SceneFile, IsReadInSeveralPieces) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("scene.kiwami");
+  const Device device = make_device();
+  const Bytes file = saved(make_mixed_scene(device, 100000, 8));
+  ASSERT_GT(file.size(), size_t{2} << 23);
+  write_file(path, file);
+  kiwami_load_desc desc = default_load();
+  desc.path = path.c_str();
+  Scene loaded;
+  ASSERT_EQ(load(device, desc, loaded), KIWAMI_OK) << last_error();
+  EXPECT_TRUE(saved(loaded) == file);
 }
 
 TEST(SceneFile, ComesBackTheSameThroughStreams) {

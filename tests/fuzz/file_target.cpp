@@ -5,6 +5,8 @@
 #include "support/exercise.h"
 #include "support/file_forger.h"
 #include "support/random.h"
+#include "support/rich_lights.h"
+#include "support/rich_scene.h"
 
 namespace kiwami_fuzz {
 namespace {
@@ -61,6 +63,24 @@ Bytes scene_seed(const Device& device, uint8_t how, uint32_t triangles, uint32_t
   });
 }
 
+Bytes rich_seed(const Device& device, uint8_t how, uint32_t parts, uint32_t width) {
+  kiwami_scene* made = nullptr;
+  kiwami_tests::make_rich_scene(device.get(), {parts, width, 3}, &made);
+  const Scene scene(made);
+  return saved(how, [&](const kiwami_save_desc* desc, uint64_t* size) {
+    kiwami_scene_save(made, desc, size);
+  });
+}
+
+Bytes light_seed(const Device& device, uint8_t how, bool has_instances) {
+  kiwami_light_tree* made = nullptr;
+  kiwami_tests::make_rich_lights(device.get(), {4, 2, has_instances}, &made);
+  const Lights lights(made);
+  return saved(how, [&](const kiwami_save_desc* desc, uint64_t* size) {
+    kiwami_light_tree_save(made, desc, size);
+  });
+}
+
 Bytes bvh_seed(const Device& device, uint8_t how, bool over_boxes) {
   const std::vector<float> corners = random_corners(20);
   const Geometry mesh = make_mesh(device, corners);
@@ -107,6 +127,12 @@ std::vector<Bytes> make_seeds() {
     }
     seeds.push_back(scene_seed(device, how, 0, 4, KIWAMI_BUILDER_BINNED_SAH));
     seeds.push_back(scene_seed(device, how, 30, 4, KIWAMI_BUILDER_SPATIAL_SPLIT));
+    for (uint32_t parts = 1; parts < kiwami_tests::kRichAll; parts *= 2) {
+      seeds.push_back(rich_seed(device, how, parts | kiwami_tests::kRichInstances, 4));
+    }
+    seeds.push_back(rich_seed(device, how, kiwami_tests::kRichAll, 8));
+    seeds.push_back(light_seed(device, how, false));
+    seeds.push_back(light_seed(device, how, true));
     seeds.push_back(bvh_seed(device, how, false));
     seeds.push_back(bvh_seed(device, how, true));
   }
@@ -135,6 +161,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     check_result(result, bvh);
     const Bvh owner(bvh);
     if (bvh) kiwami_tests::exercise(bvh);
+  }
+  {
+    kiwami_light_tree* lights = nullptr;
+    const kiwami_result result = kiwami_light_tree_load(device.get(), &desc, &lights);
+    check_result(result, lights);
+    const Lights owner(lights);
+    if (lights) kiwami_tests::exercise(lights);
   }
   {
     kiwami_scene* scene = nullptr;

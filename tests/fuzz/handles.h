@@ -16,6 +16,7 @@ struct Release {
   void operator()(kiwami_geometry* geometry) const { kiwami_geometry_release(geometry); }
   void operator()(kiwami_scene* scene) const { kiwami_scene_release(scene); }
   void operator()(kiwami_bvh* bvh) const { kiwami_bvh_release(bvh); }
+  void operator()(kiwami_light_tree* tree) const { kiwami_light_tree_release(tree); }
 };
 template <typename T>
 using Handle = std::unique_ptr<T, Release>;
@@ -23,6 +24,7 @@ using Device = Handle<kiwami_device>;
 using Geometry = Handle<kiwami_geometry>;
 using Scene = Handle<kiwami_scene>;
 using Bvh = Handle<kiwami_bvh>;
+using Lights = Handle<kiwami_light_tree>;
 
 /// Memory that counts, and refuses beyond a limit.
 struct CountedMemory {

@@ -29,7 +29,7 @@ std::vector<kiwami_ray> make_rays() {
            random.symmetric(),
            random.symmetric(),
            1e30f,
-           0.0f,
+           random.unit(),
            ~0u,
            0u,
            0u};
@@ -85,6 +85,35 @@ void exercise(kiwami_bvh* bvh) {
     export_as(bvh, format);
   }
   check(kiwami_bvh_refit(bvh, nullptr, 0, 0));
+}
+
+void exercise(kiwami_light_tree* lights) {
+  const auto sample = [&] {
+    Random random(5);
+    kiwami_light_receiver receivers[kRayCount] = {};
+    kiwami_light_choice choices[4 * kRayCount];
+    for (kiwami_light_receiver& receiver : receivers) {
+      for (float& coordinate : receiver.position) coordinate = 2 * random.symmetric();
+      for (float& coordinate : receiver.normal) coordinate = random.symmetric();
+      receiver.link_mask = ~uint64_t{0};
+      receiver.random = static_cast<double>(random.unit());
+    }
+    for (uint32_t method = KIWAMI_LIGHT_METHOD_TREE; method <= KIWAMI_LIGHT_METHOD_ROULETTE;
+         ++method) {
+      kiwami_light_query query;
+      check(kiwami_light_query_init(&query, sizeof query));
+      query.method = method;
+      query.max_choices = method <= KIWAMI_LIGHT_METHOD_POWER ? 1 : 4;
+      check(kiwami_light_sample(lights, receivers, 0, choices, 0, kRayCount, &query));
+    }
+  };
+  const float power = 3.0f;
+  sample();
+  check(kiwami_light_tree_set_powers(lights, 0, &power, 0, 1));
+  for (const auto call : {kiwami_light_tree_refit, kiwami_light_tree_commit}) {
+    check(call(lights));
+    sample();
+  }
 }
 
 }  // namespace kiwami_tests

@@ -10,5 +10,7 @@ namespace kiwami_tests {
 /// right but KIWAMI_ERROR_INTERNAL, which throws.
 void exercise(kiwami_scene* scene);
 void exercise(kiwami_bvh* bvh);
+/// Samples by each method, changes, refits and commits.
+void exercise(kiwami_light_tree* lights);
 
 }  // namespace kiwami_tests

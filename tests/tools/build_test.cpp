@@ -58,6 +58,39 @@ TEST(Build, ItsFileIsTakenByEveryCommand) {
   EXPECT_NE(info.output.find("\"triangles\": 1280"), std::string::npos) << info.output;
 }
 
+TEST(Build, KeepsInstancesIfItIsTold) {
+  const TemporaryFolder folder;
+  const std::string kept = folder / "kept.kiwami", flat = folder / "flat.kiwami";
+  const CommandResult built = run_command({"build", "forest:12", "-o", kept, "--instanced"});
+  ASSERT_EQ(built.exit_code, 0) << built.errors;
+  ASSERT_EQ(run_command({"build", "forest:12", "-o", flat}).exit_code, 0);
+  EXPECT_LT(2 * read_bytes(kept).size(), read_bytes(flat).size());
+  const std::vector<std::string> commands[] = {
+      {"info", kept},
+      {"verify", kept, "--rays", "100"},
+      {"verify", kept, "--rays", "100", "--instanced"},
+      {"bench", kept, "--rays", "random", "--ray-count", "512", "--rounds", "1"},
+      {"inspect", kept, "--json", folder / "tree.json", "--ray-count", "64"},
+      {"build", kept, "-o", folder / "again.kiwami", "--instanced", "--time-loads", "1"}};
+  for (const std::vector<std::string>& command : commands) {
+    const CommandResult result = run_command(command);
+    EXPECT_EQ(result.exit_code, 0) << command[0] << ": " << result.errors;
+  }
+  // The same picture from the scene, from the file, and from the file that was made of the file.
+  std::string pictures[3];
+  const std::string scenes[] = {"forest:12", kept, folder / "again.kiwami"};
+  for (int i = 0; i < 3; ++i) {
+    const std::string picture = folder / "x.ppm";
+    const CommandResult result =
+        run_command({"render", scenes[i], "-o", picture, "--size", "41x37", "--spp", "1", "--eye",
+                     "9,9,6", "--target", "0,1,0", "--up", "0,1,0", "--fov", "50", "--instanced"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    pictures[i] = read_bytes(picture);
+  }
+  EXPECT_TRUE(pictures[0] == pictures[1]);
+  EXPECT_TRUE(pictures[0] == pictures[2]);
+}
+
 TEST(Build, DamagedFilesAreErrors) {
   const TemporaryFolder folder;
   const std::string path = build(folder, {});

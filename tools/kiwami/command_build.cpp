@@ -17,6 +17,7 @@ struct BuildCommandOptions {
   std::string scene;
   std::string output;
   uint32_t load_repeats = 0;
+  bool instanced = false;
   TraceOptions trace;
   PipelineOptions pipeline;
 };
@@ -58,7 +59,8 @@ void run_build(const BuildCommandOptions& options) {
     throw UsageError("--output is '" + options.output + "', which is a folder, expected a file");
   }
   const Device device = options.trace.make_device();
-  const SceneFile file = flatten(load_scene(options.scene));
+  const SceneFile loaded = load_scene(options.scene);
+  const SceneFile file = options.instanced ? loaded : flatten(loaded);
   const BuiltScene scene(device, file, options.pipeline.build_options(options.trace.bvh_width));
   const kiwami_scene_info& info = scene.info();
   std::printf("build   %s triangles in %.1f ms, %u wide, %.1f bytes per triangle\n",
@@ -85,6 +87,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
                    "Load the file so many times in each way, and print the median")
       ->check(whole_number(0, 1000))
       ->capture_default_str();
+  add_instanced_option(*command, options->instanced);
   add_trace_options(*command, options->trace);
   add_pipeline_options(*command, options->pipeline);
   command->callback([options, &exit_code] {

@@ -79,7 +79,9 @@ nlohmann::ordered_json collect_file(const std::string& path) {
       "fits", "fits, but its width has no kernels of this instruction set: scalar ones trace it",
       "does not fit: a newer version wrote it"};
   nlohmann::ordered_json report;
-  report["kind"] = info.kind == KIWAMI_FILE_SCENE ? "scene" : "tree";
+  report["kind"] = info.kind == KIWAMI_FILE_SCENE    ? "scene"
+                   : info.kind == KIWAMI_FILE_LIGHTS ? "lights"
+                                                     : "tree";
   report["fit"] = kFits[std::min<uint32_t>(info.fit, 2)];
   report["format_version"] = info.format_version;
   report["library_version"] = version_text(info.library_version);

@@ -104,11 +104,13 @@ void print_build(const SceneFile& file, const Device& device, const kiwami_scene
               info.node_fill * 100.0, info.leaf_fill * 100.0);
 }
 
-/// With the tree of the file, if it is one that was saved with its tree.
+/// With the trees of the file, if it is one that was saved with them, they name what is hit as it is
+/// named in the loaded file, and that stays as it is.
 std::unique_ptr<BuiltScene> make_scene(const RenderOptions& options, const Device& device,
-                                       const SceneFile& file) {
-  if (is_saved_scene(options.scene)) {
-    return std::make_unique<BuiltScene>(device, options.scene, KIWAMI_LOAD_MAP);
+                                       const SceneFile& loaded, const SceneFile& file) {
+  const bool is_changed = !options.motion.empty() || options.leaf_mask_level != 0;
+  if (is_saved_scene(options.scene) && loaded.instances_are_outermost && !is_changed) {
+    return std::make_unique<BuiltScene>(device, options.scene, KIWAMI_LOAD_MAP, loaded.instances);
   }
   BuildOptions build = options.pipeline.build_options(options.trace.bvh_width);
   build.leaf_mask_level = options.leaf_mask_level;
@@ -136,7 +138,7 @@ void run_render(const RenderOptions& options) {
   const SceneFile loaded = load_scene(options.scene);
   SceneFile file = options.instanced ? loaded : flatten(loaded);
   if (!options.motion.empty()) set_in_motion(file, options.motion);
-  const std::unique_ptr<BuiltScene> built = make_scene(options, device, file);
+  const std::unique_ptr<BuiltScene> built = make_scene(options, device, loaded, file);
   const BuiltScene& scene = *built;
   print_build(file, device, scene.info());
 

@@ -157,7 +157,9 @@ BuiltScene::BuiltScene(const Device& device, const SceneFile& file, const BuildO
   }
 }
 
-BuiltScene::BuiltScene(const Device& device, const std::string& path, uint32_t load_flags) {
+BuiltScene::BuiltScene(const Device& device, const std::string& path, uint32_t load_flags,
+                       const std::vector<Instance>& instances)
+    : loaded_instances_(instances) {
   kiwami_load_desc desc;
   throw_on_error(kiwami_load_desc_init(&desc, sizeof desc), device.get());
   desc.path = path.c_str();
@@ -271,6 +273,11 @@ void BuiltScene::own_closest_hits(std::span<const kiwami_ray> rays,
 
 void BuiltScene::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const {
   own_closest_hits(rays, hits);
+  for (kiwami_hit& hit : hits) {
+    if (loaded_instances_.empty()) break;
+    if (hit.instance_id == KIWAMI_INVALID_ID) continue;
+    move_to_world(loaded_instances_[hit.instance_id].transform, hit);
+  }
   if (!has_instances_) return;
   for (size_t i = 0; i < hits.size(); ++i) {
     if (hits[i].instance_id == KIWAMI_INVALID_ID) continue;

@@ -98,7 +98,9 @@ class BuiltScene : public Tracer {
  public:
   BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options = {});
   /// A scene that was saved, with its tree; `load_flags` are KIWAMI_LOAD_*. It needs no other file.
-  BuiltScene(const Device& device, const std::string& path, uint32_t load_flags);
+  /// The instances are those of the file, where it has any and they are outermost.
+  BuiltScene(const Device& device, const std::string& path, uint32_t load_flags,
+             const std::vector<Instance>& instances = {});
   ~BuiltScene() override { release(); }
   BuiltScene(const BuiltScene&) = delete;
   BuiltScene& operator=(const BuiltScene&) = delete;
@@ -149,7 +151,8 @@ class BuiltScene : public Tracer {
   std::vector<kiwami_scene*> shown_;  ///< the scenes of instances
   kiwami_scene* scene_ = nullptr;
   std::vector<kiwami_geometry*> geometries_;
-  bool has_instances_ = false;  ///< which are the last geometry
+  bool has_instances_ = false;              ///< which are the last geometry
+  std::vector<Instance> loaded_instances_;  ///< of a scene that was saved
   kiwami_scene_info info_{};
   double node_cost_ = 1.0;
   double leaf_cost_ = 1.0;

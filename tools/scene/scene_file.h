@@ -48,6 +48,9 @@ struct View {
 struct SceneFile {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
+  /// Whether a tree that was saved with the file calls them by the same numbers. It does not where
+  /// they come from instances within instances, or of several meshes.
+  bool instances_are_outermost = true;
   std::optional<View> view;  ///< only procedural scenes suggest one
   /// Of the instances at time 1, the others being at 0; empty: at rest.
   std::vector<std::array<float, 12>> moved_transforms = {};

@@ -474,48 +474,6 @@ internal unsafe struct kiwami_compressed8_node {
 }
 
 [StructLayout(LayoutKind.Sequential)]
-internal unsafe struct kiwami_save_desc {
-  public uint struct_size;
-  public uint flags;
-  public IntPtr path;
-  public IntPtr write;
-  public IntPtr write_user;
-  public IntPtr data;
-  public ulong capacity;
-  public const int Size = 48;
-}
-
-[StructLayout(LayoutKind.Sequential)]
-internal unsafe struct kiwami_load_desc {
-  public uint struct_size;
-  public uint flags;
-  public IntPtr path;
-  public IntPtr read;
-  public IntPtr read_user;
-  public IntPtr data;
-  public ulong size;
-  public uint bvh_width;
-  public uint reserved;
-  public const int Size = 56;
-}
-
-[StructLayout(LayoutKind.Sequential)]
-internal unsafe struct kiwami_file_info {
-  public uint struct_size;
-  public uint kind;
-  public uint fit;
-  public uint format_version;
-  public uint library_version;
-  public uint bvh_width;
-  public uint section_count;
-  public uint reserved;
-  public ulong file_bytes;
-  public ulong triangle_count;
-  public ulong node_count;
-  public const int Size = 56;
-}
-
-[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct kiwami_light {
   public uint type;
   public uint flags;
@@ -648,6 +606,48 @@ internal unsafe struct kiwami_light_query {
   public IntPtr pixels;
   public ulong pixel_stride;
   public const int Size = 72;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_save_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr path;
+  public IntPtr write;
+  public IntPtr write_user;
+  public IntPtr data;
+  public ulong capacity;
+  public const int Size = 48;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_load_desc {
+  public uint struct_size;
+  public uint flags;
+  public IntPtr path;
+  public IntPtr read;
+  public IntPtr read_user;
+  public IntPtr data;
+  public ulong size;
+  public uint bvh_width;
+  public uint reserved;
+  public const int Size = 56;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct kiwami_file_info {
+  public uint struct_size;
+  public uint kind;
+  public uint fit;
+  public uint format_version;
+  public uint library_version;
+  public uint bvh_width;
+  public uint section_count;
+  public uint reserved;
+  public ulong file_bytes;
+  public ulong triangle_count;
+  public ulong node_count;
+  public const int Size = 56;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -880,7 +880,7 @@ internal static class Native {
   const string Library = "kiwami";
 
   public const uint KIWAMI_ABI_VERSION = 0;
-  public const uint KIWAMI_FILE_FORMAT_VERSION = 1;
+  public const uint KIWAMI_FILE_FORMAT_VERSION = 2;
   public const uint KIWAMI_INVALID_ID = 4294967295;
   public const uint KIWAMI_LIGHT_MAX_CHOICES = 64;
   public const float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
@@ -990,13 +990,6 @@ internal static class Native {
   public const uint KIWAMI_EXPORT_WIDE4 = 2;
   public const uint KIWAMI_EXPORT_WIDE8 = 3;
   public const uint KIWAMI_EXPORT_COMPRESSED8 = 4;
-  public const uint KIWAMI_LOAD_MAP = 1;
-  public const uint KIWAMI_LOAD_TRUSTED = 2;
-  public const uint KIWAMI_FILE_SCENE = 1;
-  public const uint KIWAMI_FILE_BVH = 2;
-  public const uint KIWAMI_FIT_NATIVE = 0;
-  public const uint KIWAMI_FIT_SCALAR = 1;
-  public const uint KIWAMI_FIT_NONE = 2;
   public const uint KIWAMI_LIGHT_POINT = 0;
   public const uint KIWAMI_LIGHT_SPOT = 1;
   public const uint KIWAMI_LIGHT_TRIANGLE = 2;
@@ -1025,6 +1018,14 @@ internal static class Native {
   public const uint KIWAMI_LIGHT_SEQUENCE_RANDOM = 0;
   public const uint KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE = 1;
   public const uint KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
+  public const uint KIWAMI_LOAD_MAP = 1;
+  public const uint KIWAMI_LOAD_TRUSTED = 2;
+  public const uint KIWAMI_FILE_SCENE = 1;
+  public const uint KIWAMI_FILE_BVH = 2;
+  public const uint KIWAMI_FILE_LIGHTS = 3;
+  public const uint KIWAMI_FIT_NATIVE = 0;
+  public const uint KIWAMI_FIT_SCALAR = 1;
+  public const uint KIWAMI_FIT_NONE = 2;
   public const uint KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   public const uint KIWAMI_MAX_TIME_STEPS = 129;
   public const uint KIWAMI_TRANSFORM_MATRIX = 0;
@@ -1267,27 +1268,6 @@ internal static class Native {
   public static extern int kiwami_bvh_export(IntPtr bvh, uint format, IntPtr nodes, UIntPtr node_bytes, IntPtr primitives, UIntPtr primitive_count);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-  public static extern int kiwami_save_desc_init(IntPtr desc, UIntPtr size);
-
-  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-  public static extern int kiwami_load_desc_init(IntPtr desc, UIntPtr size);
-
-  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-  public static extern int kiwami_scene_save(IntPtr scene, IntPtr desc, IntPtr bytes);
-
-  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-  public static extern int kiwami_scene_load(IntPtr device, IntPtr desc, IntPtr scene);
-
-  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-  public static extern int kiwami_bvh_save(IntPtr bvh, IntPtr desc, IntPtr bytes);
-
-  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-  public static extern int kiwami_bvh_load(IntPtr device, IntPtr desc, IntPtr bvh);
-
-  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-  public static extern int kiwami_file_get_info(IntPtr device, IntPtr desc, IntPtr info);
-
-  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_light_tree_desc_init(IntPtr desc, UIntPtr size);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
@@ -1340,6 +1320,33 @@ internal static class Native {
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_light_pdf(IntPtr tree, IntPtr receivers, UIntPtr receiver_stride, IntPtr lights, UIntPtr light_stride, IntPtr probabilities, UIntPtr probability_stride, UIntPtr count, IntPtr query);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_save_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_load_desc_init(IntPtr desc, UIntPtr size);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_save(IntPtr scene, IntPtr desc, IntPtr bytes);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_scene_load(IntPtr device, IntPtr desc, IntPtr scene);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_save(IntPtr bvh, IntPtr desc, IntPtr bytes);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_bvh_load(IntPtr device, IntPtr desc, IntPtr bvh);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_save(IntPtr tree, IntPtr desc, IntPtr bytes);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_light_tree_load(IntPtr device, IntPtr desc, IntPtr tree);
+
+  [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+  public static extern int kiwami_file_get_info(IntPtr device, IntPtr desc, IntPtr info);
 
   [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
   public static extern int kiwami_moving_mesh_desc_init(IntPtr desc, UIntPtr size);

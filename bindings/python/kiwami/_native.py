@@ -5,7 +5,7 @@ do not edit."""
 import ctypes
 
 KIWAMI_ABI_VERSION = 0
-KIWAMI_FILE_FORMAT_VERSION = 1
+KIWAMI_FILE_FORMAT_VERSION = 2
 KIWAMI_INVALID_ID = 4294967295
 KIWAMI_LIGHT_MAX_CHOICES = 64
 KIWAMI_MAX_COORDINATE = 1.152921504606847e+18
@@ -115,13 +115,6 @@ KIWAMI_EXPORT_BINARY = 1
 KIWAMI_EXPORT_WIDE4 = 2
 KIWAMI_EXPORT_WIDE8 = 3
 KIWAMI_EXPORT_COMPRESSED8 = 4
-KIWAMI_LOAD_MAP = 1
-KIWAMI_LOAD_TRUSTED = 2
-KIWAMI_FILE_SCENE = 1
-KIWAMI_FILE_BVH = 2
-KIWAMI_FIT_NATIVE = 0
-KIWAMI_FIT_SCALAR = 1
-KIWAMI_FIT_NONE = 2
 KIWAMI_LIGHT_POINT = 0
 KIWAMI_LIGHT_SPOT = 1
 KIWAMI_LIGHT_TRIANGLE = 2
@@ -150,6 +143,14 @@ KIWAMI_LIGHT_ORDER_SCRAMBLED = 1
 KIWAMI_LIGHT_SEQUENCE_RANDOM = 0
 KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE = 1
 KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1
+KIWAMI_LOAD_MAP = 1
+KIWAMI_LOAD_TRUSTED = 2
+KIWAMI_FILE_SCENE = 1
+KIWAMI_FILE_BVH = 2
+KIWAMI_FILE_LIGHTS = 3
+KIWAMI_FIT_NATIVE = 0
+KIWAMI_FIT_SCALAR = 1
+KIWAMI_FIT_NONE = 2
 KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1
 KIWAMI_MAX_TIME_STEPS = 129
 KIWAMI_TRANSFORM_MATRIX = 0
@@ -648,48 +649,6 @@ class kiwami_compressed8_node(ctypes.Structure):
     ]
 
 
-class kiwami_save_desc(ctypes.Structure):
-    _fields_ = [
-        ("struct_size", ctypes.c_uint32),
-        ("flags", ctypes.c_uint32),
-        ("path", ctypes.c_void_p),
-        ("write", ctypes.c_void_p),
-        ("write_user", ctypes.c_void_p),
-        ("data", ctypes.c_void_p),
-        ("capacity", ctypes.c_uint64),
-    ]
-
-
-class kiwami_load_desc(ctypes.Structure):
-    _fields_ = [
-        ("struct_size", ctypes.c_uint32),
-        ("flags", ctypes.c_uint32),
-        ("path", ctypes.c_void_p),
-        ("read", ctypes.c_void_p),
-        ("read_user", ctypes.c_void_p),
-        ("data", ctypes.c_void_p),
-        ("size", ctypes.c_uint64),
-        ("bvh_width", ctypes.c_uint32),
-        ("reserved", ctypes.c_uint32),
-    ]
-
-
-class kiwami_file_info(ctypes.Structure):
-    _fields_ = [
-        ("struct_size", ctypes.c_uint32),
-        ("kind", ctypes.c_uint32),
-        ("fit", ctypes.c_uint32),
-        ("format_version", ctypes.c_uint32),
-        ("library_version", ctypes.c_uint32),
-        ("bvh_width", ctypes.c_uint32),
-        ("section_count", ctypes.c_uint32),
-        ("reserved", ctypes.c_uint32),
-        ("file_bytes", ctypes.c_uint64),
-        ("triangle_count", ctypes.c_uint64),
-        ("node_count", ctypes.c_uint64),
-    ]
-
-
 class kiwami_light(ctypes.Structure):
     _fields_ = [
         ("type", ctypes.c_uint32),
@@ -822,6 +781,48 @@ class kiwami_light_query(ctypes.Structure):
         ("sequence_seed", ctypes.c_uint32),
         ("pixels", ctypes.c_void_p),
         ("pixel_stride", ctypes.c_uint64),
+    ]
+
+
+class kiwami_save_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("path", ctypes.c_void_p),
+        ("write", ctypes.c_void_p),
+        ("write_user", ctypes.c_void_p),
+        ("data", ctypes.c_void_p),
+        ("capacity", ctypes.c_uint64),
+    ]
+
+
+class kiwami_load_desc(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("flags", ctypes.c_uint32),
+        ("path", ctypes.c_void_p),
+        ("read", ctypes.c_void_p),
+        ("read_user", ctypes.c_void_p),
+        ("data", ctypes.c_void_p),
+        ("size", ctypes.c_uint64),
+        ("bvh_width", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+    ]
+
+
+class kiwami_file_info(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("kind", ctypes.c_uint32),
+        ("fit", ctypes.c_uint32),
+        ("format_version", ctypes.c_uint32),
+        ("library_version", ctypes.c_uint32),
+        ("bvh_width", ctypes.c_uint32),
+        ("section_count", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+        ("file_bytes", ctypes.c_uint64),
+        ("triangle_count", ctypes.c_uint64),
+        ("node_count", ctypes.c_uint64),
     ]
 
 
@@ -1085,9 +1086,6 @@ SIZES = {
     kiwami_wide4_node: 128,
     kiwami_wide8_node: 256,
     kiwami_compressed8_node: 80,
-    kiwami_save_desc: 48,
-    kiwami_load_desc: 56,
-    kiwami_file_info: 56,
     kiwami_light: 96,
     kiwami_light_mesh_desc: 96,
     kiwami_light_instance_desc: 72,
@@ -1099,6 +1097,9 @@ SIZES = {
     kiwami_light_lobe: 16,
     kiwami_light_pixel: 12,
     kiwami_light_query: 72,
+    kiwami_save_desc: 48,
+    kiwami_load_desc: 56,
+    kiwami_file_info: 56,
     kiwami_moving_mesh_desc: 96,
     kiwami_quaternion_transform: 64,
     kiwami_moving_instances_desc: 112,
@@ -1440,20 +1441,6 @@ def declare(library):
         ctypes.c_void_p,
         ctypes.c_size_t,
     ]
-    library.kiwami_save_desc_init.restype = ctypes.c_int32
-    library.kiwami_save_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
-    library.kiwami_load_desc_init.restype = ctypes.c_int32
-    library.kiwami_load_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
-    library.kiwami_scene_save.restype = ctypes.c_int32
-    library.kiwami_scene_save.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
-    library.kiwami_scene_load.restype = ctypes.c_int32
-    library.kiwami_scene_load.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
-    library.kiwami_bvh_save.restype = ctypes.c_int32
-    library.kiwami_bvh_save.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
-    library.kiwami_bvh_load.restype = ctypes.c_int32
-    library.kiwami_bvh_load.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
-    library.kiwami_file_get_info.restype = ctypes.c_int32
-    library.kiwami_file_get_info.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
     library.kiwami_light_tree_desc_init.restype = ctypes.c_int32
     library.kiwami_light_tree_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
     library.kiwami_light_mesh_desc_init.restype = ctypes.c_int32
@@ -1542,6 +1529,24 @@ def declare(library):
         ctypes.c_size_t,
         ctypes.c_void_p,
     ]
+    library.kiwami_save_desc_init.restype = ctypes.c_int32
+    library.kiwami_save_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_load_desc_init.restype = ctypes.c_int32
+    library.kiwami_load_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    library.kiwami_scene_save.restype = ctypes.c_int32
+    library.kiwami_scene_save.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_scene_load.restype = ctypes.c_int32
+    library.kiwami_scene_load.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_bvh_save.restype = ctypes.c_int32
+    library.kiwami_bvh_save.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_bvh_load.restype = ctypes.c_int32
+    library.kiwami_bvh_load.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_light_tree_save.restype = ctypes.c_int32
+    library.kiwami_light_tree_save.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_light_tree_load.restype = ctypes.c_int32
+    library.kiwami_light_tree_load.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    library.kiwami_file_get_info.restype = ctypes.c_int32
+    library.kiwami_file_get_info.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
     library.kiwami_moving_mesh_desc_init.restype = ctypes.c_int32
     library.kiwami_moving_mesh_desc_init.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
     library.kiwami_moving_mesh_create.restype = ctypes.c_int32

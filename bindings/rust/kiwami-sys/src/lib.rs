@@ -9,7 +9,7 @@ use std::os::raw::{c_char, c_void};
 pub type kiwami_result = i32;
 
 pub const KIWAMI_ABI_VERSION: u32 = 0;
-pub const KIWAMI_FILE_FORMAT_VERSION: u32 = 1;
+pub const KIWAMI_FILE_FORMAT_VERSION: u32 = 2;
 pub const KIWAMI_INVALID_ID: u32 = 4294967295;
 pub const KIWAMI_LIGHT_MAX_CHOICES: u32 = 64;
 pub const KIWAMI_MAX_COORDINATE: f32 = 1.152921504606847e+18;
@@ -119,13 +119,6 @@ pub const KIWAMI_EXPORT_BINARY: u32 = 1;
 pub const KIWAMI_EXPORT_WIDE4: u32 = 2;
 pub const KIWAMI_EXPORT_WIDE8: u32 = 3;
 pub const KIWAMI_EXPORT_COMPRESSED8: u32 = 4;
-pub const KIWAMI_LOAD_MAP: u32 = 1;
-pub const KIWAMI_LOAD_TRUSTED: u32 = 2;
-pub const KIWAMI_FILE_SCENE: u32 = 1;
-pub const KIWAMI_FILE_BVH: u32 = 2;
-pub const KIWAMI_FIT_NATIVE: u32 = 0;
-pub const KIWAMI_FIT_SCALAR: u32 = 1;
-pub const KIWAMI_FIT_NONE: u32 = 2;
 pub const KIWAMI_LIGHT_POINT: u32 = 0;
 pub const KIWAMI_LIGHT_SPOT: u32 = 1;
 pub const KIWAMI_LIGHT_TRIANGLE: u32 = 2;
@@ -154,6 +147,14 @@ pub const KIWAMI_LIGHT_ORDER_SCRAMBLED: u32 = 1;
 pub const KIWAMI_LIGHT_SEQUENCE_RANDOM: u32 = 0;
 pub const KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE: u32 = 1;
 pub const KIWAMI_LIGHT_QUERY_CALLING_THREAD: u32 = 1;
+pub const KIWAMI_LOAD_MAP: u32 = 1;
+pub const KIWAMI_LOAD_TRUSTED: u32 = 2;
+pub const KIWAMI_FILE_SCENE: u32 = 1;
+pub const KIWAMI_FILE_BVH: u32 = 2;
+pub const KIWAMI_FILE_LIGHTS: u32 = 3;
+pub const KIWAMI_FIT_NATIVE: u32 = 0;
+pub const KIWAMI_FIT_SCALAR: u32 = 1;
+pub const KIWAMI_FIT_NONE: u32 = 2;
 pub const KIWAMI_MOVING_MESH_SHARE_BUFFERS: u32 = 1;
 pub const KIWAMI_MAX_TIME_STEPS: u32 = 129;
 pub const KIWAMI_TRANSFORM_MATRIX: u32 = 0;
@@ -711,51 +712,6 @@ const _: () = assert!(std::mem::size_of::<kiwami_compressed8_node>() == 80);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct kiwami_save_desc {
-    pub struct_size: u32,
-    pub flags: u32,
-    pub path: *const c_char,
-    pub write: kiwami_write,
-    pub write_user: *mut c_void,
-    pub data: *mut c_void,
-    pub capacity: u64,
-}
-const _: () = assert!(std::mem::size_of::<kiwami_save_desc>() == 48);
-
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct kiwami_load_desc {
-    pub struct_size: u32,
-    pub flags: u32,
-    pub path: *const c_char,
-    pub read: kiwami_read,
-    pub read_user: *mut c_void,
-    pub data: *const c_void,
-    pub size: u64,
-    pub bvh_width: u32,
-    pub reserved: u32,
-}
-const _: () = assert!(std::mem::size_of::<kiwami_load_desc>() == 56);
-
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct kiwami_file_info {
-    pub struct_size: u32,
-    pub kind: u32,
-    pub fit: u32,
-    pub format_version: u32,
-    pub library_version: u32,
-    pub bvh_width: u32,
-    pub section_count: u32,
-    pub reserved: u32,
-    pub file_bytes: u64,
-    pub triangle_count: u64,
-    pub node_count: u64,
-}
-const _: () = assert!(std::mem::size_of::<kiwami_file_info>() == 56);
-
-#[repr(C)]
-#[derive(Clone, Copy)]
 pub struct kiwami_light {
     pub r#type: u32,
     pub flags: u32,
@@ -899,6 +855,51 @@ pub struct kiwami_light_query {
     pub pixel_stride: u64,
 }
 const _: () = assert!(std::mem::size_of::<kiwami_light_query>() == 72);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_save_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub path: *const c_char,
+    pub write: kiwami_write,
+    pub write_user: *mut c_void,
+    pub data: *mut c_void,
+    pub capacity: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_save_desc>() == 48);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_load_desc {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub path: *const c_char,
+    pub read: kiwami_read,
+    pub read_user: *mut c_void,
+    pub data: *const c_void,
+    pub size: u64,
+    pub bvh_width: u32,
+    pub reserved: u32,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_load_desc>() == 56);
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct kiwami_file_info {
+    pub struct_size: u32,
+    pub kind: u32,
+    pub fit: u32,
+    pub format_version: u32,
+    pub library_version: u32,
+    pub bvh_width: u32,
+    pub section_count: u32,
+    pub reserved: u32,
+    pub file_bytes: u64,
+    pub triangle_count: u64,
+    pub node_count: u64,
+}
+const _: () = assert!(std::mem::size_of::<kiwami_file_info>() == 56);
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -1216,13 +1217,6 @@ extern "C" {
     pub fn kiwami_distribution_pdf(distribution: *const kiwami_distribution, indices: *const u32, index_stride: usize, probabilities: *mut f32, probability_stride: usize, count: usize) -> kiwami_result;
     pub fn kiwami_bvh_export_counts(bvh: *const kiwami_bvh, format: u32, node_count: *mut usize, primitive_count: *mut usize) -> kiwami_result;
     pub fn kiwami_bvh_export(bvh: *const kiwami_bvh, format: u32, nodes: *mut c_void, node_bytes: usize, primitives: *mut kiwami_bvh_primitive, primitive_count: usize) -> kiwami_result;
-    pub fn kiwami_save_desc_init(desc: *mut kiwami_save_desc, size: usize) -> kiwami_result;
-    pub fn kiwami_load_desc_init(desc: *mut kiwami_load_desc, size: usize) -> kiwami_result;
-    pub fn kiwami_scene_save(scene: *const kiwami_scene, desc: *const kiwami_save_desc, bytes: *mut u64) -> kiwami_result;
-    pub fn kiwami_scene_load(device: *mut kiwami_device, desc: *const kiwami_load_desc, scene: *mut *mut kiwami_scene) -> kiwami_result;
-    pub fn kiwami_bvh_save(bvh: *const kiwami_bvh, desc: *const kiwami_save_desc, bytes: *mut u64) -> kiwami_result;
-    pub fn kiwami_bvh_load(device: *mut kiwami_device, desc: *const kiwami_load_desc, bvh: *mut *mut kiwami_bvh) -> kiwami_result;
-    pub fn kiwami_file_get_info(device: *mut kiwami_device, desc: *const kiwami_load_desc, info: *mut kiwami_file_info) -> kiwami_result;
     pub fn kiwami_light_tree_desc_init(desc: *mut kiwami_light_tree_desc, size: usize) -> kiwami_result;
     pub fn kiwami_light_mesh_desc_init(desc: *mut kiwami_light_mesh_desc, size: usize) -> kiwami_result;
     pub fn kiwami_light_instance_desc_init(desc: *mut kiwami_light_instance_desc, size: usize) -> kiwami_result;
@@ -1241,6 +1235,15 @@ extern "C" {
     pub fn kiwami_light_tree_get_info(tree: *const kiwami_light_tree, info: *mut kiwami_light_tree_info) -> kiwami_result;
     pub fn kiwami_light_sample(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, choices: *mut kiwami_light_choice, choice_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
     pub fn kiwami_light_pdf(tree: *const kiwami_light_tree, receivers: *const kiwami_light_receiver, receiver_stride: usize, lights: *const kiwami_light_name, light_stride: usize, probabilities: *mut f32, probability_stride: usize, count: usize, query: *const kiwami_light_query) -> kiwami_result;
+    pub fn kiwami_save_desc_init(desc: *mut kiwami_save_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_load_desc_init(desc: *mut kiwami_load_desc, size: usize) -> kiwami_result;
+    pub fn kiwami_scene_save(scene: *const kiwami_scene, desc: *const kiwami_save_desc, bytes: *mut u64) -> kiwami_result;
+    pub fn kiwami_scene_load(device: *mut kiwami_device, desc: *const kiwami_load_desc, scene: *mut *mut kiwami_scene) -> kiwami_result;
+    pub fn kiwami_bvh_save(bvh: *const kiwami_bvh, desc: *const kiwami_save_desc, bytes: *mut u64) -> kiwami_result;
+    pub fn kiwami_bvh_load(device: *mut kiwami_device, desc: *const kiwami_load_desc, bvh: *mut *mut kiwami_bvh) -> kiwami_result;
+    pub fn kiwami_light_tree_save(tree: *const kiwami_light_tree, desc: *const kiwami_save_desc, bytes: *mut u64) -> kiwami_result;
+    pub fn kiwami_light_tree_load(device: *mut kiwami_device, desc: *const kiwami_load_desc, tree: *mut *mut kiwami_light_tree) -> kiwami_result;
+    pub fn kiwami_file_get_info(device: *mut kiwami_device, desc: *const kiwami_load_desc, info: *mut kiwami_file_info) -> kiwami_result;
     pub fn kiwami_moving_mesh_desc_init(desc: *mut kiwami_moving_mesh_desc, size: usize) -> kiwami_result;
     pub fn kiwami_moving_mesh_create(device: *mut kiwami_device, desc: *const kiwami_moving_mesh_desc, geometry: *mut *mut kiwami_geometry) -> kiwami_result;
     pub fn kiwami_moving_instances_desc_init(desc: *mut kiwami_moving_instances_desc, size: usize) -> kiwami_result;

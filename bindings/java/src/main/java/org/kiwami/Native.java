@@ -10,7 +10,7 @@ final class Native {
   private Native() {}
 
   static final int KIWAMI_ABI_VERSION = 0;
-  static final int KIWAMI_FILE_FORMAT_VERSION = 1;
+  static final int KIWAMI_FILE_FORMAT_VERSION = 2;
   static final int KIWAMI_INVALID_ID = 0xffffffff;
   static final int KIWAMI_LIGHT_MAX_CHOICES = 64;
   static final float KIWAMI_MAX_COORDINATE = 1.152921504606847e+18f;
@@ -120,13 +120,6 @@ final class Native {
   static final int KIWAMI_EXPORT_WIDE4 = 2;
   static final int KIWAMI_EXPORT_WIDE8 = 3;
   static final int KIWAMI_EXPORT_COMPRESSED8 = 4;
-  static final int KIWAMI_LOAD_MAP = 1;
-  static final int KIWAMI_LOAD_TRUSTED = 2;
-  static final int KIWAMI_FILE_SCENE = 1;
-  static final int KIWAMI_FILE_BVH = 2;
-  static final int KIWAMI_FIT_NATIVE = 0;
-  static final int KIWAMI_FIT_SCALAR = 1;
-  static final int KIWAMI_FIT_NONE = 2;
   static final int KIWAMI_LIGHT_POINT = 0;
   static final int KIWAMI_LIGHT_SPOT = 1;
   static final int KIWAMI_LIGHT_TRIANGLE = 2;
@@ -155,6 +148,14 @@ final class Native {
   static final int KIWAMI_LIGHT_SEQUENCE_RANDOM = 0;
   static final int KIWAMI_LIGHT_SEQUENCE_BLUE_NOISE = 1;
   static final int KIWAMI_LIGHT_QUERY_CALLING_THREAD = 1;
+  static final int KIWAMI_LOAD_MAP = 1;
+  static final int KIWAMI_LOAD_TRUSTED = 2;
+  static final int KIWAMI_FILE_SCENE = 1;
+  static final int KIWAMI_FILE_BVH = 2;
+  static final int KIWAMI_FILE_LIGHTS = 3;
+  static final int KIWAMI_FIT_NATIVE = 0;
+  static final int KIWAMI_FIT_SCALAR = 1;
+  static final int KIWAMI_FIT_NONE = 2;
   static final int KIWAMI_MOVING_MESH_SHARE_BUFFERS = 1;
   static final int KIWAMI_MAX_TIME_STEPS = 129;
   static final int KIWAMI_TRANSFORM_MATRIX = 0;
@@ -601,48 +602,6 @@ final class Native {
     static final int UPPER_Z = 72;
   }
 
-  /** Offsets of kiwami_save_desc. */
-  static final class SaveDesc {
-    static final int STRUCT_BYTES = 48;
-    static final int STRUCT_SIZE = 0;
-    static final int FLAGS = 4;
-    static final int PATH = 8;
-    static final int WRITE = 16;
-    static final int WRITE_USER = 24;
-    static final int DATA = 32;
-    static final int CAPACITY = 40;
-  }
-
-  /** Offsets of kiwami_load_desc. */
-  static final class LoadDesc {
-    static final int STRUCT_BYTES = 56;
-    static final int STRUCT_SIZE = 0;
-    static final int FLAGS = 4;
-    static final int PATH = 8;
-    static final int READ = 16;
-    static final int READ_USER = 24;
-    static final int DATA = 32;
-    static final int SIZE = 40;
-    static final int BVH_WIDTH = 48;
-    static final int RESERVED = 52;
-  }
-
-  /** Offsets of kiwami_file_info. */
-  static final class FileInfo {
-    static final int STRUCT_BYTES = 56;
-    static final int STRUCT_SIZE = 0;
-    static final int KIND = 4;
-    static final int FIT = 8;
-    static final int FORMAT_VERSION = 12;
-    static final int LIBRARY_VERSION = 16;
-    static final int BVH_WIDTH = 20;
-    static final int SECTION_COUNT = 24;
-    static final int RESERVED = 28;
-    static final int FILE_BYTES = 32;
-    static final int TRIANGLE_COUNT = 40;
-    static final int NODE_COUNT = 48;
-  }
-
   /** Offsets of kiwami_light. */
   static final class Light {
     static final int STRUCT_BYTES = 96;
@@ -776,6 +735,48 @@ final class Native {
     static final int SEQUENCE_SEED = 52;
     static final int PIXELS = 56;
     static final int PIXEL_STRIDE = 64;
+  }
+
+  /** Offsets of kiwami_save_desc. */
+  static final class SaveDesc {
+    static final int STRUCT_BYTES = 48;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int PATH = 8;
+    static final int WRITE = 16;
+    static final int WRITE_USER = 24;
+    static final int DATA = 32;
+    static final int CAPACITY = 40;
+  }
+
+  /** Offsets of kiwami_load_desc. */
+  static final class LoadDesc {
+    static final int STRUCT_BYTES = 56;
+    static final int STRUCT_SIZE = 0;
+    static final int FLAGS = 4;
+    static final int PATH = 8;
+    static final int READ = 16;
+    static final int READ_USER = 24;
+    static final int DATA = 32;
+    static final int SIZE = 40;
+    static final int BVH_WIDTH = 48;
+    static final int RESERVED = 52;
+  }
+
+  /** Offsets of kiwami_file_info. */
+  static final class FileInfo {
+    static final int STRUCT_BYTES = 56;
+    static final int STRUCT_SIZE = 0;
+    static final int KIND = 4;
+    static final int FIT = 8;
+    static final int FORMAT_VERSION = 12;
+    static final int LIBRARY_VERSION = 16;
+    static final int BVH_WIDTH = 20;
+    static final int SECTION_COUNT = 24;
+    static final int RESERVED = 28;
+    static final int FILE_BYTES = 32;
+    static final int TRIANGLE_COUNT = 40;
+    static final int NODE_COUNT = 48;
   }
 
   /** Offsets of kiwami_moving_mesh_desc. */
@@ -1158,20 +1159,6 @@ final class Native {
 
   static native int kiwami_bvh_export(Pointer bvh, int format, Pointer nodes, long nodeBytes, Pointer primitives, long primitiveCount);
 
-  static native int kiwami_save_desc_init(Pointer desc, long size);
-
-  static native int kiwami_load_desc_init(Pointer desc, long size);
-
-  static native int kiwami_scene_save(Pointer scene, Pointer desc, Pointer bytes);
-
-  static native int kiwami_scene_load(Pointer device, Pointer desc, Pointer scene);
-
-  static native int kiwami_bvh_save(Pointer bvh, Pointer desc, Pointer bytes);
-
-  static native int kiwami_bvh_load(Pointer device, Pointer desc, Pointer bvh);
-
-  static native int kiwami_file_get_info(Pointer device, Pointer desc, Pointer info);
-
   static native int kiwami_light_tree_desc_init(Pointer desc, long size);
 
   static native int kiwami_light_mesh_desc_init(Pointer desc, long size);
@@ -1207,6 +1194,24 @@ final class Native {
   static native int kiwami_light_sample(Pointer tree, Pointer receivers, long receiverStride, Pointer choices, long choiceStride, long count, Pointer query);
 
   static native int kiwami_light_pdf(Pointer tree, Pointer receivers, long receiverStride, Pointer lights, long lightStride, Pointer probabilities, long probabilityStride, long count, Pointer query);
+
+  static native int kiwami_save_desc_init(Pointer desc, long size);
+
+  static native int kiwami_load_desc_init(Pointer desc, long size);
+
+  static native int kiwami_scene_save(Pointer scene, Pointer desc, Pointer bytes);
+
+  static native int kiwami_scene_load(Pointer device, Pointer desc, Pointer scene);
+
+  static native int kiwami_bvh_save(Pointer bvh, Pointer desc, Pointer bytes);
+
+  static native int kiwami_bvh_load(Pointer device, Pointer desc, Pointer bvh);
+
+  static native int kiwami_light_tree_save(Pointer tree, Pointer desc, Pointer bytes);
+
+  static native int kiwami_light_tree_load(Pointer device, Pointer desc, Pointer tree);
+
+  static native int kiwami_file_get_info(Pointer device, Pointer desc, Pointer info);
 
   static native int kiwami_moving_mesh_desc_init(Pointer desc, long size);
 
