@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "builders/nearest_places.h"
 #include "bvh/tree_edit.h"
 
 namespace kiwami {
 namespace {
 
 constexpr size_t kBlockSize = 2048;
+/// Where boxes lie in each other, it may be one pair that joins in a round. When so many times the
+/// first number of clusters have been looked at, neighbours join instead. Otherwise a third and
+/// more of the clusters join in each round.
+constexpr uint64_t kMostWork = 32;
 
 /// The rounds of joining. A cluster is the node that it will be; when it joins another one, both
 /// are written to the pair of slots that is free next.
@@ -18,6 +23,7 @@ class Clustering {
   Clustering(Array<BinaryNode> leaves, uint32_t radius, BinaryBvh& bvh, Memory& memory,
              const Parallel& parallel)
       : bvh_(bvh),
+        memory_(memory),
         radius_(radius),
         count_(leaves.size()),
         parallel_(parallel),
@@ -27,9 +33,15 @@ class Clustering {
         of_blocks_(memory, (count_ + kBlockSize - 1) / kBlockSize) {}
 
   void run() {
-    while (count_ > 1) {
-      parallel_.for_blocks(count_, kBlockSize,
-                           [this](size_t begin, size_t end) { find_nearest(begin, end); });
+    for (uint64_t work = kMostWork * count_; count_ > 1; work -= std::min<uint64_t>(work, count_)) {
+      const bool looks = work >= count_;
+      parallel_.for_blocks(count_, kBlockSize, [&](size_t begin, size_t end) {
+        if (looks) {
+          find_nearest(begin, end);
+        } else {
+          pair_neighbours(begin, end);
+        }
+      });
       join();
     }
     bvh_.nodes[0] = clusters_[0];
@@ -42,31 +54,27 @@ class Clustering {
   };
 
   void find_nearest(size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) nearest_[i] = nearest_of(i);
-  }
-
-  /// The least (area of the box around both, exclusive or of the places): the same number for both
-  /// of a pair, so the least of all pairs is mutual and every round joins one at least.
-  uint32_t nearest_of(size_t i) const {
-    const size_t first = i > radius_ ? i - radius_ : 0;
-    const size_t last = std::min(i + radius_, count_ - 1);
-    const Bounds own = clusters_[i].bounds;
-    float least = std::numeric_limits<float>::infinity();
-    size_t best = first == i ? i + 1 : first;
-    for (size_t j = first; j <= last; ++j) {
-      if (j == i) continue;
-      Bounds both = own;
-      both.extend(clusters_[j].bounds);
-      const float area = both.half_area();
-      if (area < least || (area == least && (i ^ j) < (i ^ best))) {
-        least = area;
-        best = j;
-      }
+    const size_t first = begin - std::min<size_t>(begin, radius_);
+    const size_t last = std::min(end + radius_, count_);
+    NearestPlaces places(memory_, static_cast<uint32_t>(last - first),
+                         static_cast<uint32_t>(first));
+    for (size_t i = first; i < last; ++i) {
+      const Bounds& box = clusters_[i].bounds;
+      places.set(static_cast<uint32_t>(i - first), box.lower, box.upper);
     }
-    return static_cast<uint32_t>(best);
+    places.find(static_cast<uint32_t>(last - first), radius_);
+    for (size_t i = begin; i < end; ++i) {
+      nearest_[i] = static_cast<uint32_t>(first + places.nearest(static_cast<uint32_t>(i - first)));
+    }
   }
 
-  bool is_mutual(size_t i) const { return nearest_[nearest_[i]] == i; }
+  void pair_neighbours(size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      nearest_[i] = static_cast<uint32_t>(std::min(i ^ 1, count_ - 1));
+    }
+  }
+
+  bool is_mutual(size_t i) const { return nearest_[i] != i && nearest_[nearest_[i]] == i; }
 
   void join() {
     parallel_.for_blocks(count_, kBlockSize, [this](size_t begin, size_t end) {
@@ -109,7 +117,8 @@ class Clustering {
   }
 
   BinaryBvh& bvh_;
-  size_t radius_;
+  Memory& memory_;
+  uint32_t radius_;
   size_t count_;
   const Parallel& parallel_;
   Array<BinaryNode> clusters_, joined_;
@@ -130,10 +139,12 @@ BinaryBvh PlocBuilder::build(Array<BuildPrimitive> primitives, const Config& con
     const MortonOrder order =
         sort_by_morton_code(std::move(primitives), memory, parallel, config.curve_code);
     leaves = Array<BinaryNode>(memory, count);
-    for (uint32_t i = 0; i < count; ++i) {
-      bvh.primitive_ids[i] = order.primitives[i].id;
-      leaves[i] = {order.primitives[i].bounds(), i, 1};
-    }
+    parallel.for_blocks(count, kBlockSize, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        bvh.primitive_ids[i] = order.primitives[i].id;
+        leaves[i] = {order.primitives[i].bounds(), static_cast<uint32_t>(i), 1};
+      }
+    });
   }
   bvh.nodes = Array<BinaryNode>(memory, 2 * count - 1);
   Clustering(std::move(leaves), config.radius, bvh, memory, parallel).run();

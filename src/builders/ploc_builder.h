@@ -8,12 +8,12 @@ namespace kiwami {
 /// Locally ordered clustering: D. Meister, J. Bittner, "Parallel Locally-Ordered Clustering for
 /// Bounding Volume Hierarchy Construction", TVCG 24(3), 2018. Clusters stand along a Morton curve;
 /// all pairs that are each other's nearest within a radius join at once, until one is left. Departs
-/// from it in the order of equal distances (by the exclusive or of the two places), which pairs
-/// neighbours of a run of equal boxes instead of joining one pair a step.
+/// from it in the order of equal distances (see NearestPlaces), which pairs neighbours of a run of
+/// equal boxes instead of joining one pair a step, and in what it does where boxes lie in each other.
 class PlocBuilder {
  public:
   struct Config {
-    uint32_t radius = 16;  ///< places to each side that are looked at, 1 to 255
+    uint32_t radius = 16;  ///< places to each side that are looked at: 4, 8 or 16
     CurveCode curve_code = CurveCode::kPlain;
   };
 

@@ -2,10 +2,10 @@
 // The binary trees of one block of the bottom-up builder: clusters join until few are left.
 #pragma once
 
+#include "builders/nearest_places.h"
 #include "builders/sah_bins.h"
 #include "bvh/binary_bvh.h"
 #include "wide/cluster_costs.h"
-#include "wide/nearest_clusters.h"
 #include "wide/wide_bottom_up.h"
 
 namespace kiwami {
@@ -53,7 +53,7 @@ class ClusterForest {
     while (place_count_ > target) {
       if (work < place_count_) return join_neighbours(target);
       work -= place_count_;
-      find_nearest();
+      nearest_.find(place_count_, radius_);
       join_mutual();
     }
   }
@@ -125,12 +125,6 @@ class ClusterForest {
     ++leaf_count_;
   }
 
-  void find_nearest() {
-    if (radius_ > 8) return nearest_.find<4>(place_count_);
-    if (radius_ > 4) return nearest_.find<2>(place_count_);
-    nearest_.find<1>(place_count_);
-  }
-
   void join_mutual() {
     uint32_t next = 0;
     for (uint32_t i = 0; i < place_count_; ++i) {
@@ -170,7 +164,7 @@ class ClusterForest {
 
   uint32_t radius_;
   ClusterPrices prices_;
-  NearestClusters nearest_;
+  NearestPlaces nearest_;
   Array<uint32_t> at_place_;
   Array<Tree> trees_;
   Array<ClusterTraits> traits_;  ///< by tree

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Discrete distributions: the forest against a search in the cumulative sums, both methods against
-// their probabilities, and all that may be given to them.
+// Discrete distributions: the forest against a search in the cumulative sums, both methods and the
+// alias table against their probabilities, and all that may be given to them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "lights/alias_table.h"
 #include "support/environment.h"
 #include "support/library.h"
 #include "support/random.h"
@@ -328,6 +329,43 @@ TEST_F(DistributionTest, BadArgumentsAreNamed) {
                KIWAMI_ERROR_INVALID_ARGUMENT, "distribution is NULL");
   expect_error(kiwami_distribution_get_info(nullptr, nullptr), KIWAMI_ERROR_INVALID_ARGUMENT,
                "distribution is NULL");
+}
+
+TEST(AliasTable, DrawsInProportionToWeights) {
+  Random random(seed(), 655);
+  const DeviceHandle device = make_device(KIWAMI_ISA_AUTO, 1);
+  kiwami::Memory memory(nullptr, nullptr, nullptr);
+  for (const uint32_t count : {1u, 2u, 7u, 1000u}) {
+    kiwami::Array<double> weights(memory, count);
+    double total = 0.0;
+    for (uint32_t i = 0; i < count; ++i) {
+      weights[i] = random.one_in(3) ? 0.0 : std::exp2(20.0 * static_cast<double>(random.unit()));
+      if (i == 0) weights[i] = 1.0;
+      total += weights[i];
+    }
+    const kiwami::AliasTable table(weights, memory);
+    // Along a fine grid, each number is drawn for its share of the grid's points.
+    const uint32_t points = count * 2000;
+    std::vector<uint32_t> seen(count, 0);
+    for (uint32_t i = 0; i < points; ++i) {
+      const auto draw = table.draw((i + 0.5) / points);
+      ASSERT_LT(draw.index, count);
+      ASSERT_TRUE(draw.random >= 0.0 && draw.random < 1.0);
+      ++seen[draw.index];
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+      EXPECT_NEAR(table.probability(i), weights[i] / total, 1e-12);
+      if (weights[i] == 0.0) {
+        EXPECT_EQ(seen[i], 0u);
+      }
+      // Every entry that has a part of it may round by one point.
+      EXPECT_NEAR(seen[i], table.probability(i) * points, count + 2.0) << i;
+    }
+    EXPECT_LT(table.draw(1.0 - 0x1p-53).index, count);
+  }
+  kiwami::Array<double> nothing(memory, 3);
+  nothing.fill_zero();
+  EXPECT_TRUE(kiwami::AliasTable(nothing, memory).empty());
 }
 
 }  // namespace

@@ -210,6 +210,22 @@ TEST(Bench, APipelineTableIsOfTheBuildersNamed) {
   EXPECT_GT(of_lbvh, rows.size() - of_lbvh);
 }
 
+TEST(Bench, APipelineTableNamesSinglePipelines) {
+  const bool has_two = std::thread::hardware_concurrency() > 1;
+  const Json rows = bench_rows({"sphere:2", "--pipelines", "lbvh+none,ploc+rotation", "--contract",
+                                "surface_area", "--threads", has_two ? "1,2" : "1", "--clock",
+                                "processor", "--rays", "random"});
+  std::vector<std::string> names;
+  for (const Json& row : rows) {
+    names.push_back(row.at("pipeline"));
+    expect_positive(row, {"build_ms_1", has_two ? "build_ms_2" : "build_ms_1"});
+  }
+  // The last ones are the other contractions of the default builder.
+  ASSERT_EQ(names.size(), 4u);
+  EXPECT_EQ(names[0], "lbvh, surface_area, merged");
+  EXPECT_EQ(names[1], "ploc + rotation, surface_area, merged");
+}
+
 TEST(Bench, MakesATableOfTextbookStructures) {
   const Json rows = bench_rows({"stadium", "--structures", "grid,kd_tree,bih,bvh", "--rays",
                                 "primary,ao", "--clock", "processor", "--threads", "1"});
@@ -327,6 +343,8 @@ TEST(Bench, WrongArgumentsAreRefusedInOneSentence) {
       {{"sphere:1", "--queries", "multi_hit,portal"}, "portal"},
       {{"sphere:1", "--pipelines", "bsp"}, "there is no builder 'bsp'"},
       {{"sphere:1", "--pipelines", "lbvh,lbvh"}, "--pipelines"},
+      {{"sphere:1", "--pipelines", "lbvh+magic"}, "magic"},
+      {{"sphere:1", "--pipelines", "lbvh", "--clock", "processor", "--threads", "2"}, "--clock"},
       {{"--list", folder / ""}, "expected tuning, judging or a text file"},
       {{"--list", folder.write("empty.txt", "# nothing\n")}, "names no scene"},
       {{"--list", "judging", "--scenes-folder", folder / "none"}, "there is no file"},

@@ -324,8 +324,8 @@ std::string clustered_by_definition(const MortonOrder& order, size_t radius) {
     std::vector<size_t> nearest(clusters.size());
     for (size_t i = 0; i < clusters.size(); ++i) {
       std::tuple<float, size_t> least{std::numeric_limits<float>::infinity(), 0};
-      for (size_t j = 0; j < clusters.size(); ++j) {
-        if (j == i || std::max(i, j) - std::min(i, j) > radius) continue;
+      for (size_t j = i < radius ? 0 : i - radius; j < clusters.size() && j <= i + radius; ++j) {
+        if (j == i) continue;
         const std::tuple<float, size_t> key{area_of_both(clusters[i].bounds, clusters[j].bounds),
                                             i ^ j};
         if (key < least) {
@@ -351,9 +351,9 @@ std::string clustered_by_definition(const MortonOrder& order, size_t radius) {
 }
 
 TEST_F(MortonBuilders, PlocJoinsWhatIsNearest) {
-  for (const uint32_t count : {1u, 2u, 3u, 9u, 500u}) {
-    for (const Mesh& mesh : {soup(count, seed() + count), terrain(1 + count / 30)}) {
-      for (const uint32_t radius : {1u, 8u, 100u}) {
+  for (const uint32_t count : {1u, 2u, 3u, 9u, 500u, 4500u}) {
+    for (const Mesh& mesh : {soup(count, seed() + count), terrain(1 + count / 90)}) {
+      for (const uint32_t radius : {4u, 8u, 16u}) {
         const BinaryBvh bvh = ploc(mesh, radius, one_thread_);
         verify(bvh, mesh, 1);
         EXPECT_EQ(text_of(bvh), clustered_by_definition(order_of(mesh), radius)) << count;
@@ -383,6 +383,27 @@ TEST_F(MortonBuilders, DegenerateInputsGiveValidTrees) {
     }
     verify(ploc(named.mesh, 16, many_threads_), named.mesh, 1);
   }
+}
+
+/// Runs loops on the calling thread, and counts them in *user.
+int32_t count_loops(void* user, size_t count, kiwami_parallel_task task, void* data) {
+  ++*static_cast<size_t*>(user);
+  for (size_t i = 0; i < count; ++i) task(data, i);
+  return KIWAMI_OK;
+}
+
+TEST_F(MortonBuilders, PlocDoesNotTakeARoundForEachOfBoxesInBoxes) {
+  constexpr uint32_t kCount = 5000;
+  Mesh mesh;
+  for (uint32_t i = kCount; i > 0; --i) {
+    const auto size = static_cast<float>(i);
+    mesh.add({-size, -size, -size}, {size, size, size}, {0, 0, 0});
+  }
+  size_t loops = 0;
+  const kiwami::Parallel counting(0, count_loops, &loops, 2);
+  verify(ploc(mesh, 16, counting), mesh, 1);
+  // One pair a round is each other's nearest, of the first and smallest ones.
+  EXPECT_LT(loops, 500u);
 }
 
 TEST_F(MortonBuilders, PlocCostsLessThanLbvh) {

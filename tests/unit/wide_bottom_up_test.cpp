@@ -23,7 +23,7 @@ namespace {
 using kiwami::BinaryBvh;
 using kiwami::BuildPrimitive;
 using kiwami::ClusterForest;
-using kiwami::NearestClusters;
+using kiwami::NearestPlaces;
 using kiwami::WideBottomUpConfig;
 using kiwami::WideDraft;
 using kiwami::WideTree;
@@ -219,7 +219,7 @@ TEST_F(WideBottomUp, WritesWhatTheBlockCosts) {
 
 TEST_F(WideBottomUp, FindsTheNearestWithinItsReach) {
   const auto primitives = primitives_of(soup(500, seed()), memory_);
-  NearestClusters nearest(memory_, 500);
+  NearestPlaces nearest(memory_, 500);
   for (uint32_t i = 0; i < 500; ++i) nearest.set(i, primitives[i].lower, primitives[i].upper);
   nearest.find<2>(500);
   const auto distance = [&](uint32_t a, uint32_t b) {
@@ -235,8 +235,7 @@ TEST_F(WideBottomUp, FindsTheNearestWithinItsReach) {
     }
     ASSERT_NE(nearest.nearest(i), i);
     ASSERT_LE(std::max(nearest.nearest(i), i) - std::min(nearest.nearest(i), i), 8u);
-    // The last bits of a distance are not its own.
-    EXPECT_LE(distance(i, nearest.nearest(i)), least * 1.00002f);
+    EXPECT_EQ(distance(i, nearest.nearest(i)), least);
     EXPECT_EQ(nearest.is_mutual(i), nearest.nearest(nearest.nearest(i)) == i);
     mutual += nearest.is_mutual(i);
   }
@@ -244,7 +243,7 @@ TEST_F(WideBottomUp, FindsTheNearestWithinItsReach) {
 }
 
 TEST_F(WideBottomUp, OfEqualBoxesNeighboursAreNearest) {
-  NearestClusters nearest(memory_, 200);
+  NearestPlaces nearest(memory_, 200);
   for (uint32_t i = 0; i < 200; ++i) nearest.set(i, {1, 1, 1}, {2, 2, 2});
   nearest.find<4>(200);
   for (uint32_t i = 0; i < 200; ++i) EXPECT_EQ(nearest.nearest(i), i ^ 1);

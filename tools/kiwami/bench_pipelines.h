@@ -11,10 +11,11 @@
 namespace kiwami::tools {
 
 /// Ways to build a scene, for a table of what each brings: every builder named (or all of them)
-/// alone and with each of the optimisers, and `base`'s builder (binned_sah where that makes the wide
-/// tree itself) once more with each contraction that is not its own. What the pipelines have in common is that of `base`. Throws LibraryError
-/// for a name that is no builder's.
-std::vector<BuildOptions> choose_pipelines(const std::vector<std::string>& builders,
+/// alone and with each of the optimisers, or just so where a word is BUILDER+OPTIMIZER or
+/// BUILDER+none; and `base`'s builder (binned_sah where that makes the wide tree itself) once more
+/// with each contraction that is not its own. What the pipelines have in common is that of `base`.
+/// Throws LibraryError for a name that is no builder's, UsageError for a wrong BUILDER+OPTIMIZER.
+std::vector<BuildOptions> choose_pipelines(const std::vector<std::string>& words,
                                            const BuildOptions& base);
 
 /// What rays of one set cost in a tree.

@@ -88,8 +88,11 @@ BenchSettings make_settings(const BenchOptions& options) {
   settings.rounds = options.rounds;
   settings.ray_count = options.ray_count;
   settings.clock = options.clock == "wall" ? Clock::kWall : Clock::kProcessor;
-  if (settings.clock == Clock::kProcessor && settings.threads != std::vector<uint32_t>{1}) {
-    throw UsageError("--clock is processor, which is for --threads 1 alone");
+  const bool also_more_threads = !options.pipelines.empty() && settings.threads.front() == 1;
+  if (settings.clock == Clock::kProcessor && settings.threads != std::vector<uint32_t>{1} &&
+      !also_more_threads) {
+    throw UsageError(
+        "--clock is processor, which is for --threads 1, alone or as the first with --pipelines");
   }
   return settings;
 }
@@ -239,7 +242,8 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
   add_pipeline_options(command, options.pipeline);
   command.add_option("--pipelines", options.pipelines,
                      "A table of pipelines in place of a peer: these builders between commas, or "
-                     "all, each alone and with each optimiser");
+                     "all, each alone and with each optimiser; BUILDER+OPTIMIZER or BUILDER+none "
+                     "is that one alone");
   command.add_option("--structures", options.structures,
                      "A table of textbook structures in place of a peer, some of grid, kd_tree, "
                      "bih and bvh, next to the library, one ray a call on one thread");
@@ -282,7 +286,8 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
   command
       .add_option("--clock", options.clock,
                   "wall: the time that passes; processor: the time spent on a processor, for one "
-                  "thread on a machine that is busy with other work")
+                  "thread on a machine that is busy with other work (with --pipelines, builds by "
+                  "more threads go by the least time that passes)")
       ->check(one_of({"wall", "processor"}))
       ->capture_default_str();
   command
