@@ -132,7 +132,7 @@ struct GeneralTraversal {
         MovingBoxReader<N> boxes;
         if (!boxes.begin(motion.boxes, ray.time)) return false;
         query.set_level(motion.scene, ready, query.reach());
-        MotionVisitor visitor{query, motion, boxes, ray.time, query.best_bound};
+        MotionVisitor visitor{query, LeafFreezer<N>(motion, ray.time), boxes, query.best_bound};
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
       case PartKind::kUser: {
@@ -288,9 +288,8 @@ struct GeneralTraversal {
     static constexpr bool kOrdered = Query::kOrdered;
 
     Query& query;
-    const MotionPart& motion;
+    LeafFreezer<N> freezer;
     MovingBoxReader<N> boxes;
-    float time;
     float best_bound;
 
     uint32_t test_boxes(ChildReference node, const SlabRay<N>& slabs, vfloat<N>& entry) const {
@@ -301,7 +300,7 @@ struct GeneralTraversal {
       const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, reference);
       GatheredBlock<N> frozen;
       frozen.source = block.id;
-      const uint32_t lanes = freeze_leaf<N>(motion, block, reference.mask(), time, frozen);
+      const uint32_t lanes = freezer.freeze(block, reference.mask(), frozen);
       const bool is_done = query.visit_leaf(frozen, lanes, counting);
       best_bound = query.best_bound;
       return is_done;
@@ -327,7 +326,7 @@ struct GeneralTraversal {
             return query.accept(found.t, view.geometry_id, found.primitive_id,
                                 [&](kiwami_hit& hit) { describe_user_hit(found, hit); });
           });
-      if (has_failed) query.options.report_failed_callback();
+      if (has_failed) query.options->report_failed_callback();
       best_bound = query.best_bound;
       return is_done;
     }
@@ -341,7 +340,7 @@ inline void trace_general(const SceneView& scene, const RayBatch& batch,
     if (options.has_failed_callback()) return;
     const UnalignedRay& ray = ray_of(batch, i);
     Query query;
-    query.begin(options.from(i), ray);
+    query.begin(options, i, ray);
     if (is_traceable(ray)) GeneralTraversal<Query, N, Probe>{query, probe}.visit_scene(scene, ray);
     write_answer(batch, i, query.answer());
     query.deliver();
