@@ -5,6 +5,7 @@
 
 #include "core/collect_boxes.h"
 #include "core/error.h"
+#include "core/shape_blocks.h"
 #include "math/rounding.h"
 
 namespace kiwami {
@@ -138,8 +139,13 @@ void ShapePart::build(const AttachedGeometry* geometries, size_t count, const Pa
   }
   views_.shrink(used);
   numbered_count_ = static_cast<size_t>(next_id);
-  source_ = {views_.data(), static_cast<uint32_t>(used), source_.kind};
-  if (used != 0) tree_ = build_part_tree(collect(plan.memory, plan.parallel), plan);
+  source_ = {views_.data(), static_cast<uint32_t>(used), source_.kind, nullptr, 0};
+  if (used == 0) return;
+  tree_ = build_part_tree(collect(plan.memory, plan.parallel), plan);
+  if (plan.parameters.whole(KIWAMI_PARAMETER_LAYOUT) == KIWAMI_LAYOUT_COMPACT) return;
+  blocks_ = make_shape_blocks(source_, tree_.tree, plan.memory, plan.parallel);
+  source_.blocks = blocks_.data();
+  source_.leaf_begin = tree_.tree.node_bytes();
 }
 
 Array<BuildPrimitive> ShapePart::collect(Memory& memory, const Parallel& parallel) const {

@@ -9,7 +9,7 @@ namespace kiwami {
 /// The shapes of one kind in a scene, and the tree over them.
 class ShapePart {
  public:
-  explicit ShapePart(ShapeKind kind) : source_{nullptr, 0, kind} {}
+  explicit ShapePart(ShapeKind kind) : source_{nullptr, 0, kind, nullptr, 0} {}
   ShapePart(const ShapePart&) = delete;
   ShapePart& operator=(const ShapePart&) = delete;
 
@@ -29,6 +29,7 @@ class ShapePart {
 
   Array<ShapeView> views_;
   ShapeSource source_;
+  Array<float> blocks_;
   size_t numbered_count_ = 0;
   PartTree tree_;
 };

@@ -270,9 +270,8 @@ struct GeneralTraversal {
     float best_bound;
 
     bool visit_block(const TreeView& tree, ChildReference reference, Probe& counting) {
-      const bool is_done = visit_shapes<N>(
-          source, index_leaf_at<N>(tree.memory, reference), reference.mask(), ready, ray,
-          [&](const ShapeCrossing& crossing) {
+      const bool is_done =
+          visit_shapes<N>(source, tree, reference, ready, ray, [&](const ShapeCrossing& crossing) {
             counting.on_accept_in_leaf(ready, crossing.t);
             return query.accept(
                 crossing.t, crossing.shape.view->geometry_id, crossing.shape.primitive,

@@ -59,19 +59,67 @@ inline Segment<double> segment_of(const RawPoint& a, const RawPoint& b) {
   return {{centre_of(a), centre_of(b)}, {a.radius, b.radius}};
 }
 
-/// The points of up to N shapes, by lane. Lanes that are not asked for hold those of another.
+/// Points of up to N shapes, in rows of N lanes.
 template <int N>
-struct PointLanes {
-  float x[N], y[N], z[N], radius[N];
+struct PointRows {
+  const float* rows;
 
-  void set(int lane, const RawPoint& point) {
-    x[lane] = point.x;
-    y[lane] = point.y;
-    z[lane] = point.z;
-    radius[lane] = point.radius;
-  }
+  float x(int lane) const { return rows[lane]; }
+  float y(int lane) const { return rows[N + lane]; }
+  float z(int lane) const { return rows[2 * N + lane]; }
+  float radius(int lane) const { return rows[3 * N + lane]; }
+  RawPoint operator[](int lane) const { return {x(lane), y(lane), z(lane), radius(lane)}; }
+
   Triple<vdouble4> centres(int first) const {
-    return {load_widened(x + first), load_widened(y + first), load_widened(z + first)};
+    return {load_widened(rows + first), load_widened(rows + N + first),
+            load_widened(rows + 2 * N + first)};
+  }
+  vdouble4 radii(int first) const { return load_widened(rows + 3 * N + first); }
+};
+
+/// The shapes of a leaf block: where they stand as a block of their own, or gathered from the
+/// buffers. Lanes that are not asked for hold others, or zeros.
+template <int N>
+struct ShapeRows {
+  float room[kMostShapeRows][N];
+
+  void set(int lane, int first_row, const RawPoint& point) {
+    room[first_row][lane] = point.x;
+    room[first_row + 1][lane] = point.y;
+    room[first_row + 2][lane] = point.z;
+    room[first_row + 3][lane] = point.radius;
+  }
+
+  /// Gathered: lanes that are not asked for repeat one that is.
+  void gather(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes) {
+    for (int lane = 0; lane < N; ++lane) {
+      const bool is_own = ((lanes >> lane) & 1u) != 0;
+      const ShapePlace place = place_of(source, block.id[is_own ? lane : __builtin_ctz(lanes)]);
+      if (source.kind == ShapeKind::kCurve) {
+        const size_t index = first_point_of(place);
+        set(lane, 0, point_at(*place.view, index));
+        set(lane, 4, point_at(*place.view, index + 1));
+        continue;
+      }
+      set(lane, 0, point_at(*place.view, place.primitive));
+      if (source.kind != ShapeKind::kDisc) continue;
+      const RawNormal normal = normal_at(*place.view, place.primitive);
+      room[4][lane] = normal.x;
+      room[5][lane] = normal.y;
+      room[6][lane] = normal.z;
+    }
+  }
+
+  const float* of(const ShapeSource& source, const TreeView& tree, const IndexBlock<N>& block,
+                  uint32_t lanes) {
+    if (!source.blocks) {
+      gather(source, block, lanes);
+      return room[0];
+    }
+    const auto* const at = reinterpret_cast<const unsigned char*>(block.id);
+    const uint64_t begin = static_cast<uint64_t>(at - tree.memory) - source.leaf_begin;
+    // A leaf block has one row, of ids.
+    return source.blocks + begin / sizeof(uint32_t) * shape_rows(source.kind);
   }
 };
 
@@ -127,50 +175,57 @@ struct ShapeSieve {
 };
 
 template <int N, typename Sieve>
-inline bool visit_spheres(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
-                          const Sieve& sieve) {
-  PointLanes<N> points;
-  ShapePlace places[N];
-  for (int lane = 0; lane < N; ++lane) {
-    const bool is_own = ((lanes >> lane) & 1u) != 0;
-    places[lane] = place_of(source, block.id[is_own ? lane : __builtin_ctz(lanes)]);
-    points.set(lane, point_at(*places[lane].view, places[lane].primitive));
-  }
+inline bool visit_spheres(const ShapeSource& source, const float* rows, const IndexBlock<N>& block,
+                          uint32_t lanes, const Sieve& sieve) {
+  const PointRows<N> points{rows};
   const WideRay<vdouble4> ray = spread_ray(sieve.wide);
   double middle[N], squared_half[N];
   uint32_t met = 0;
   for (int first = 0; first < N; first += 4) {
     if (((lanes >> first) & 0xFu) == 0) continue;
     const Passage<vdouble4> passage =
-        pass_sphere(ray, ray.origin - points.centres(first), load_widened(points.radius + first));
+        pass_sphere(ray, ray.origin - points.centres(first), points.radii(first));
     store(middle + first, passage.middle);
     store(squared_half + first, passage.squared_half);
     met |= positive_lanes(passage.squared_half, first);
   }
   for (met &= lanes; met; met &= met - 1) {
     const int lane = __builtin_ctz(met);
-    if (sieve.is_masked(places[lane])) continue;
+    const ShapePlace place = place_of(source, block.id[lane]);
+    if (sieve.is_masked(place)) continue;
     SegmentInterval interval;
     interval.add({middle[lane], squared_half[lane]}, 0.0);
-    if (sieve.pass(interval, places[lane])) return true;
+    if (sieve.pass(interval, place)) return true;
   }
   return false;
 }
 
 template <int N, typename Sieve>
-inline bool visit_discs(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
-                        const Sieve& sieve) {
-  for (; lanes; lanes &= lanes - 1) {
-    const ShapePlace place = place_of(source, block.id[__builtin_ctz(lanes)]);
+inline bool visit_discs(const ShapeSource& source, const float* rows, const IndexBlock<N>& block,
+                        uint32_t lanes, const Sieve& sieve) {
+  const PointRows<N> points{rows};
+  const float* const normals = rows + 4 * N;
+  const WideRay<vdouble4> ray = spread_ray(sieve.wide);
+  double t[N], facing[N];
+  uint32_t met = 0;
+  for (int first = 0; first < N; first += 4) {
+    if (((lanes >> first) & 0xFu) == 0) continue;
+    const Triple<vdouble4> normal = {load_widened(normals + first),
+                                     load_widened(normals + N + first),
+                                     load_widened(normals + 2 * N + first)};
+    const PlaneMeeting<vdouble4> meeting =
+        meet_plane(ray, ray.origin - points.centres(first), normal);
+    const vdouble4 radius = points.radii(first);
+    store(t + first, meeting.t);
+    store(facing + first, meeting.facing);
+    met |= greater(radius * radius, meeting.squared_distance) << first;
+  }
+  for (met &= lanes; met; met &= met - 1) {
+    const int lane = __builtin_ctz(met);
+    const ShapePlace place = place_of(source, block.id[lane]);
     if (sieve.is_masked(place)) continue;
-    const RawPoint point = point_at(*place.view, place.primitive);
-    const PlaneMeeting<double> meeting =
-        meet_plane(sieve.wide, sieve.wide.origin - centre_of(point),
-                   triple_of(normal_at(*place.view, place.primitive)));
-    const double radius = point.radius;
-    if (!(meeting.squared_distance < radius * radius)) continue;
-    const ShapeCrossing crossing = {static_cast<float>(meeting.t), meeting.facing < 0.0, meeting.t,
-                                    0.0, place};
+    const ShapeCrossing crossing = {static_cast<float>(t[lane]), facing[lane] < 0.0, t[lane], 0.0,
+                                    place};
     if (sieve.pass(crossing)) return true;
   }
   return false;
@@ -179,11 +234,9 @@ inline bool visit_discs(const ShapeSource& source, const IndexBlock<N>& block, u
 /// Which of four segments, first on, the ray may meet: where none of their spheres is met and the
 /// cone neither is nor is left to the careful form, it does not.
 template <int N>
-inline uint32_t may_meet(const WideRay<vdouble4>& ray, const PointLanes<N> (&points)[2],
-                         int first) {
-  const Segment<vdouble4> segment = {
-      {points[0].centres(first), points[1].centres(first)},
-      {load_widened(points[0].radius + first), load_widened(points[1].radius + first)}};
+inline uint32_t may_meet(const WideRay<vdouble4>& ray, const PointRows<N> (&points)[2], int first) {
+  const Segment<vdouble4> segment = {{points[0].centres(first), points[1].centres(first)},
+                                     {points[0].radii(first), points[1].radii(first)}};
   const Triple<vdouble4> offset = ray.origin - segment.centre[0];
   const Passage<vdouble4> begin = pass_sphere(ray, offset, segment.radius[0]);
   const Passage<vdouble4> end = pass_sphere(ray, ray.origin - segment.centre[1], segment.radius[1]);
@@ -197,17 +250,9 @@ inline uint32_t may_meet(const WideRay<vdouble4>& ray, const PointLanes<N> (&poi
 }
 
 template <int N, typename Sieve>
-inline bool visit_curves(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
-                         const Sieve& sieve) {
-  PointLanes<N> points[2];
-  ShapePlace places[N];
-  for (int lane = 0; lane < N; ++lane) {
-    const bool is_own = ((lanes >> lane) & 1u) != 0;
-    places[lane] = place_of(source, block.id[is_own ? lane : __builtin_ctz(lanes)]);
-    const size_t index = first_point_of(places[lane]);
-    points[0].set(lane, point_at(*places[lane].view, index));
-    points[1].set(lane, point_at(*places[lane].view, index + 1));
-  }
+inline bool visit_curves(const ShapeSource& source, const float* rows, const IndexBlock<N>& block,
+                         uint32_t lanes, const Sieve& sieve) {
+  const PointRows<N> points[2] = {{rows}, {rows + 4 * N}};
   const WideRay<vdouble4> ray = spread_ray(sieve.wide);
   uint32_t met = 0;
   for (int first = 0; first < N; first += 4) {
@@ -215,13 +260,11 @@ inline bool visit_curves(const ShapeSource& source, const IndexBlock<N>& block, 
   }
   for (met &= lanes; met; met &= met - 1) {
     const int lane = __builtin_ctz(met);
-    if (sieve.is_masked(places[lane])) continue;
-    const auto raw = [&](int k) {
-      return RawPoint{points[k].x[lane], points[k].y[lane], points[k].z[lane],
-                      points[k].radius[lane]};
-    };
-    const SegmentInterval interval = cross_segment(sieve.wide, segment_of(raw(0), raw(1)));
-    if (!interval.is_empty && sieve.pass(interval, places[lane])) return true;
+    const ShapePlace place = place_of(source, block.id[lane]);
+    if (sieve.is_masked(place)) continue;
+    const SegmentInterval interval =
+        cross_segment(sieve.wide, segment_of(points[0][lane], points[1][lane]));
+    if (!interval.is_empty && sieve.pass(interval, place)) return true;
   }
   return false;
 }
@@ -232,15 +275,19 @@ inline WideRay<double> widen_ray(const UnalignedRay& ray) {
   return widen_ray(origin, direction);
 }
 
-/// Calls accept(crossing) for each crossing of the lanes' shapes that the ray meets, until accept
-/// returns true; then returns true.
+/// Calls accept(crossing) for each crossing of the shapes of a leaf of a tree that the ray meets,
+/// until accept returns true; then returns true.
 template <int N, typename Accept>
-inline bool visit_shapes(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
+inline bool visit_shapes(const ShapeSource& source, const TreeView& tree, ChildReference leaf,
                          const ReadyRay& ray, const WideRay<double>& wide, Accept accept) {
   const ShapeSieve<Accept> sieve{ray, wide, accept};
-  if (source.kind == ShapeKind::kSphere) return visit_spheres<N>(source, block, lanes, sieve);
-  if (source.kind == ShapeKind::kDisc) return visit_discs<N>(source, block, lanes, sieve);
-  return visit_curves<N>(source, block, lanes, sieve);
+  const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, leaf);
+  const uint32_t lanes = leaf.mask();
+  ShapeRows<N> gathered;
+  const float* const rows = gathered.of(source, tree, block, lanes);
+  if (source.kind == ShapeKind::kSphere) return visit_spheres(source, rows, block, lanes, sieve);
+  if (source.kind == ShapeKind::kDisc) return visit_discs(source, rows, block, lanes, sieve);
+  return visit_curves(source, rows, block, lanes, sieve);
 }
 
 /// Fills in what a hit says of the shape: u, v and the normal, each rounded once.
