@@ -146,6 +146,36 @@ inline void gather_rows(const unsigned char* const (&rows)[8], vfloat<8> (&colum
   transpose(row, column);
   for (int k = 0; k < 3; ++k) columns[k].value = column[k];
 }
+inline void gather_between(const unsigned char* const (&rows)[4], size_t step, float start,
+                           float end, vfloat<4> (&columns)[3]) {
+  const simde__m128 of_start = simde_mm_set1_ps(start), of_end = simde_mm_set1_ps(end);
+  simde__m128 row[4], column[4];
+  for (int i = 0; i < 4; ++i) {
+    row[i] = simde_mm_add_ps(simde_mm_mul_ps(of_start, load_three(rows[i])),
+                             simde_mm_mul_ps(of_end, load_three(rows[i] + step)));
+  }
+  transpose(row, column);
+  for (int k = 0; k < 3; ++k) columns[k].value = column[k];
+}
+inline simde__m256 load_three_twice(const unsigned char* low, const unsigned char* high) {
+  return simde_mm256_insertf128_ps(simde_mm256_castps128_ps256(load_three(low)), load_three(high),
+                                   1);
+}
+// Inlined by force: the addresses of the rows need not go through memory.
+__attribute__((always_inline)) inline void gather_between(const unsigned char* const (&rows)[8],
+                                                          size_t step, float start, float end,
+                                                          vfloat<8> (&columns)[3]) {
+  const simde__m256 of_start = simde_mm256_set1_ps(start), of_end = simde_mm256_set1_ps(end);
+  simde__m256 row[4], column[4];
+#pragma GCC unroll 4
+  for (int i = 0; i < 4; ++i) {
+    row[i] = simde_mm256_add_ps(
+        simde_mm256_mul_ps(of_start, load_three_twice(rows[i], rows[i + 4])),
+        simde_mm256_mul_ps(of_end, load_three_twice(rows[i] + step, rows[i + 4] + step)));
+  }
+  transpose(row, column);
+  for (int k = 0; k < 3; ++k) columns[k].value = column[k];
+}
 inline float least_lane(vfloat<8> a) {
   return least_lane(vfloat<4>{simde_mm_min_ps(simde_mm256_castps256_ps128(a.value),
                                               simde_mm256_extractf128_ps(a.value, 1))});

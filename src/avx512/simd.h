@@ -111,6 +111,18 @@ inline void gather_rows(const unsigned char* const (&rows)[16], vfloat<16> (&col
   gather_rows(last, high);
   for (int k = 0; k < 3; ++k) columns[k] = join(low[k], high[k]);
 }
+inline void gather_between(const unsigned char* const (&rows)[16], size_t step, float start,
+                           float end, vfloat<16> (&columns)[3]) {
+  const unsigned char *first[8], *last[8];
+  for (int i = 0; i < 8; ++i) {
+    first[i] = rows[i];
+    last[i] = rows[i + 8];
+  }
+  vfloat<8> low[3], high[3];
+  gather_between(first, step, start, end, low);
+  gather_between(last, step, start, end, high);
+  for (int k = 0; k < 3; ++k) columns[k] = join(low[k], high[k]);
+}
 template <typename Target>
 inline void store_rows(const vfloat<16> (&columns)[4], Target* const* targets, size_t offset) {
   const vfloat<8> low[4] = {low_half(columns[0]), low_half(columns[1]), low_half(columns[2]),

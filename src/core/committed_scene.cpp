@@ -147,7 +147,10 @@ CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometrie
     meshes_.restore(device, geometries, count, *image_, saved.parts, memory_);
   }
   show_tree(saved.parts.mesh_tree ? meshes_.tree().bounds : saved.tree.bounds);
-  parts_.restore(geometries, count, saved.parts, tree_.width, memory_);
+  // What is mapped stays where it is.
+  const bool copies_shapes = image_->is_copy() && tree_.leaf_layout == LeafLayout::kTriangles;
+  parts_.restore(geometries, count, saved.parts,
+                 {tree_.width, copies_shapes, memory_, device.parallel()});
   if (saved.parts.mesh_tree) parts_.add(meshes_.tree(), meshes_.view());
   show_parts();
   describe();

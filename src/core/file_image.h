@@ -22,6 +22,8 @@ class FileImage : public Object<FileImage> {
 
   const unsigned char* data() const { return data_; }
   size_t size() const { return size_; }
+  /// False for what is mapped or the caller's own.
+  bool is_copy() const { return !copy_.empty(); }
 
  private:
   void take_data(const kiwami_load_desc& desc);

@@ -20,12 +20,14 @@ void SceneParts::build(const AttachedGeometry* geometries, size_t count, const P
 }
 
 void SceneParts::restore(const AttachedGeometry* geometries, size_t count, const SavedParts& saved,
-                         uint32_t width, Memory& memory) {
-  instances_.restore(geometries, count, saved, width, memory);
+                         const RestorePlan& plan) {
+  Memory& memory = plan.memory;
+  instances_.restore(geometries, count, saved, plan.width, memory);
   if (instances_.can_be_hit()) views_[count_++] = instances_.part();
   if (instances_.moving().can_be_hit()) views_[count_++] = instances_.moving().part();
   for (size_t kind = 0; kind < 3; ++kind) {
     shapes_[kind].restore(geometries, count, saved.shape_trees[kind], memory);
+    if (plan.copies_shapes) shapes_[kind].copy_shapes(memory, plan.parallel);
     add(shapes_[kind].tree(), shapes_[kind].view());
   }
   motion_.restore(geometries, count, saved.motion_tree, saved.motion_bounds, memory);

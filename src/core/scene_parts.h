@@ -8,6 +8,14 @@
 
 namespace kiwami {
 
+/// What the parts of a saved scene are restored with.
+struct RestorePlan {
+  uint32_t width;      ///< of the nodes: 4, 8 or 16
+  bool copies_shapes;  ///< where rays read them faster
+  Memory& memory;
+  const Parallel& parallel;
+};
+
 /// What a scene holds beside static triangles, each kind with a tree of its own.
 class SceneParts {
  public:
@@ -21,7 +29,7 @@ class SceneParts {
   /// The same, with trees that were saved. Throws Error(INVALID_FILE) where there are too few or
   /// too many of them.
   void restore(const AttachedGeometry* geometries, size_t count, const SavedParts& saved,
-               uint32_t width, Memory& memory);
+               const RestorePlan& plan);
 
   /// Adds a part that lies elsewhere, unless it is empty. Its box and its counts are not added.
   void add(const PartTree& tree, const ScenePart& view);

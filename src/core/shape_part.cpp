@@ -6,6 +6,7 @@
 #include "core/collect_boxes.h"
 #include "core/error.h"
 #include "core/saved_scene.h"
+#include "core/shape_blocks.h"
 #include "math/rounding.h"
 
 namespace kiwami {
@@ -139,12 +140,15 @@ void ShapePart::number(const AttachedGeometry* geometries, size_t count, Memory&
   }
   views_.shrink(used);
   numbered_count_ = static_cast<size_t>(next_id);
-  source_ = {views_.data(), static_cast<uint32_t>(used), source_.kind};
+  source_ = {views_.data(), static_cast<uint32_t>(used), source_.kind, nullptr, 0};
 }
 
 void ShapePart::build(const AttachedGeometry* geometries, size_t count, const PartPlan& plan) {
   number(geometries, count, plan.memory);
-  if (!views_.empty()) tree_ = build_part_tree(collect(plan.memory, plan.parallel), plan);
+  if (views_.empty()) return;
+  tree_ = build_part_tree(collect(plan.memory, plan.parallel), plan);
+  if (plan.parameters.whole(KIWAMI_PARAMETER_LAYOUT) == KIWAMI_LAYOUT_COMPACT) return;
+  copy_shapes(plan.memory, plan.parallel);
 }
 
 void ShapePart::restore(const AttachedGeometry* geometries, size_t count, const SavedTree* saved,
@@ -152,6 +156,13 @@ void ShapePart::restore(const AttachedGeometry* geometries, size_t count, const 
   number(geometries, count, memory);
   check_saved_part("shapes", numbered_count_, saved);
   if (saved) tree_ = saved->part();
+}
+
+void ShapePart::copy_shapes(Memory& memory, const Parallel& parallel) {
+  if (views_.empty()) return;
+  blocks_ = make_shape_blocks(source_, tree_.tree, memory, parallel);
+  source_.blocks = blocks_.data();
+  source_.leaf_begin = tree_.tree.node_bytes();
 }
 
 Array<BuildPrimitive> ShapePart::collect(Memory& memory, const Parallel& parallel) const {

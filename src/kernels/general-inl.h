@@ -4,6 +4,8 @@
 // They are objects of their own, so that the plain kernels know nothing of all this.
 #pragma once
 
+#define KIWAMI_INLINE_CHOICE __attribute__((always_inline)) inline
+
 #include "kernels/answers-inl.h"
 #include "kernels/general-list-inl.h"
 #include "kernels/motion-inl.h"
@@ -44,6 +46,7 @@ __attribute__((noinline)) bool freeze(const MovingInstancePart& part, uint32_t n
 }
 
 /// The ray in the space of an instanced scene. Not normalised: a distance stays the same number.
+/// Both halves are written as they will be read: a load that spans several stores waits for them.
 inline kiwami_ray transform(const InstanceRecord& instance, const UnalignedRay& ray) {
   const auto column = [&](int k) { return load_from_bytes<4>(instance.column[k]); };
   const vfloat<4> x = column(0), y = column(1), z = column(2);
@@ -53,24 +56,21 @@ inline kiwami_ray transform(const InstanceRecord& instance, const UnalignedRay& 
   const vfloat<4> direction =
       (x * broadcast<4>(ray.direction_x) + y * broadcast<4>(ray.direction_y)) +
       z * broadcast<4>(ray.direction_z);
-  float components[8];
-  store(components, origin);
-  store(components + 4, direction);
+  constexpr float last[4] = {1.0f, 1.0f, 1.0f, -1.0f};
+  const vfloat<4> is_last = load<4>(last);
   kiwami_ray local;
-  local.origin_x = components[0];
-  local.origin_y = components[1];
-  local.origin_z = components[2];
-  local.tmin = ray.tmin;
-  local.direction_x = components[4];
-  local.direction_y = components[5];
-  local.direction_z = components[6];
-  local.tmax = ray.tmax;
+  auto* const halves = reinterpret_cast<float*>(&local);
+  store(halves, select_negative(is_last, broadcast<4>(ray.tmin), origin));
+  store(halves + 4, select_negative(is_last, broadcast<4>(ray.tmax), direction));
   local.time = ray.time;
   local.mask = ray.mask;
   local.flags = ray.flags;
   local.id = ray.id;
   return local;
 }
+static_assert(offsetof(kiwami_ray, tmin) == 3 * sizeof(float) &&
+              offsetof(kiwami_ray, direction_x) == 4 * sizeof(float) &&
+              offsetof(kiwami_ray, tmax) == 7 * sizeof(float));
 
 /// One ray on its way through a graph of scenes. Scenes are visited by recursion: a path has at
 /// most KIWAMI_MAX_INSTANCE_DEPTH instances.
@@ -123,8 +123,8 @@ struct GeneralTraversal {
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
       case PartKind::kShapes: {
-        ShapeVisitor visitor{query, *static_cast<const ShapeSource*>(part.data), ready,
-                             widen_ray(ray), query.best_bound};
+        const auto& source = *static_cast<const ShapeSource*>(part.data);
+        ShapeVisitor visitor{query, source, ready, shape_ray(ray, source.kind), query.best_bound};
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
       case PartKind::kMovingTriangles: {
@@ -132,7 +132,7 @@ struct GeneralTraversal {
         MovingBoxReader<N> boxes;
         if (!boxes.begin(motion.boxes, ray.time)) return false;
         query.set_level(motion.scene, ready, query.reach());
-        MotionVisitor visitor{query, motion, boxes, ray.time, query.best_bound};
+        MotionVisitor visitor{query, LeafFreezer<N>(motion, ray.time), boxes, query.best_bound};
         return traverse<N>(part.tree, {subtree, ready.nearest}, ready, visitor, probe);
       }
       case PartKind::kUser: {
@@ -213,6 +213,16 @@ struct GeneralTraversal {
       return (ray.mask & (part.masks ? part.masks[number] & mask : mask)) != 0;
     }
 
+    /// A mesh alone, which most scenes show, is visited without a call that may call itself.
+    bool visit_scene(const SceneView& shown, const kiwami_ray& local, const InstanceStart& start) {
+      if (shown.part_count != 0 || start.tree != InstanceStart::kAllTrees) {
+        return traversal.visit_from(shown, local, start);
+      }
+      if (shown.tree.root.mask() == 0) return false;
+      ReadyRay local_ready;
+      return traversal.visit_triangles(shown, shown.tree.root, local, local_ready);
+    }
+
     bool visit_instance(const InstanceStart& start, const InstanceRecord& instance) {
       const uint32_t number = start.instance;
       const Prototype& prototype = part.prototypes[instance.prototype];
@@ -221,7 +231,7 @@ struct GeneralTraversal {
       Query& asked = traversal.query;
       asked.path.number[asked.path.depth++] = number;
       const auto level = traversal.probe.enter(ready);
-      const bool is_done = traversal.visit_from(*prototype.scene, local, start);
+      const bool is_done = visit_scene(*prototype.scene, local, start);
       traversal.probe.leave(level);
       --asked.path.depth;
       if (is_done) return true;
@@ -266,17 +276,16 @@ struct GeneralTraversal {
     Query& query;
     const ShapeSource& source;
     const ReadyRay& ready;
-    WideRay<double> ray;
+    ShapeRay ray;
     float best_bound;
 
     bool visit_block(const TreeView& tree, ChildReference reference, Probe& counting) {
-      const bool is_done = visit_shapes<N>(
-          source, index_leaf_at<N>(tree.memory, reference), reference.mask(), ready, ray,
-          [&](const ShapeCrossing& crossing) {
+      const bool is_done =
+          visit_shapes<N>(source, tree, reference, ready, ray, [&](const ShapeCrossing& crossing) {
             counting.on_accept_in_leaf(ready, crossing.t);
             return query.accept(
                 crossing.t, crossing.shape.view->geometry_id, crossing.shape.primitive,
-                [&](kiwami_hit& hit) { describe_crossing(source, ray, crossing, hit); });
+                [&](kiwami_hit& hit) { describe_crossing(source, ray.wide, crossing, hit); });
           });
       best_bound = query.best_bound;
       return is_done;
@@ -288,9 +297,8 @@ struct GeneralTraversal {
     static constexpr bool kOrdered = Query::kOrdered;
 
     Query& query;
-    const MotionPart& motion;
+    LeafFreezer<N> freezer;
     MovingBoxReader<N> boxes;
-    float time;
     float best_bound;
 
     uint32_t test_boxes(ChildReference node, const SlabRay<N>& slabs, vfloat<N>& entry) const {
@@ -301,7 +309,7 @@ struct GeneralTraversal {
       const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, reference);
       GatheredBlock<N> frozen;
       frozen.source = block.id;
-      const uint32_t lanes = freeze_leaf<N>(motion, block, reference.mask(), time, frozen);
+      const uint32_t lanes = freezer.freeze(block, reference.mask(), frozen);
       const bool is_done = query.visit_leaf(frozen, lanes, counting);
       best_bound = query.best_bound;
       return is_done;
@@ -327,7 +335,7 @@ struct GeneralTraversal {
             return query.accept(found.t, view.geometry_id, found.primitive_id,
                                 [&](kiwami_hit& hit) { describe_user_hit(found, hit); });
           });
-      if (has_failed) query.options.report_failed_callback();
+      if (has_failed) query.options->report_failed_callback();
       best_bound = query.best_bound;
       return is_done;
     }
@@ -341,7 +349,7 @@ inline void trace_general(const SceneView& scene, const RayBatch& batch,
     if (options.has_failed_callback()) return;
     const UnalignedRay& ray = ray_of(batch, i);
     Query query;
-    query.begin(options.from(i), ray);
+    query.begin(options, i, ray);
     if (is_traceable(ray)) GeneralTraversal<Query, N, Probe>{query, probe}.visit_scene(scene, ray);
     write_answer(batch, i, query.answer());
     query.deliver();

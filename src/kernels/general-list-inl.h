@@ -21,8 +21,8 @@ struct GeneralNearestHits : GeneralQuery<N> {
   float tmax;
 
   void begin(const QueryOptions& of_ray, const UnalignedRay& given, const GeneralHitList& target) {
-    GeneralQuery<N>::begin(of_ray, given);
-    this->options.filter = nullptr;
+    GeneralQuery<N>::begin(of_ray, 0);
+    this->asks_filter = false;
     tmax = finite_tmax(given);
     list = {target.hits, target.keys, target.limit, 0};
     after = target.after;

@@ -32,19 +32,25 @@ enum class Verdict { kReject, kAccept, kStop };
 /// the same at each.
 template <int N>
 struct GeneralQuery : QueryBase<N, AnyLeaves<N>> {
-  QueryOptions options;  ///< of this ray
+  const QueryOptions* options;
+  size_t index;  ///< of this ray among those that the options are for
   InstancePath path;
   kiwami_exclusion excluded;
   bool has_filter;
-  bool is_opaque;  ///< what is offered, so that no filter is asked
+  bool asks_filter;  ///< false where the filter is left to the caller
+  bool is_opaque;    ///< what is offered, so that no filter is asked
 
-  void begin(const QueryOptions& of_ray, const UnalignedRay&) {
-    options = of_ray;
+  void begin(const QueryOptions& of_rays, size_t i) {
+    options = &of_rays;
+    index = i;
     path.depth = 0;
-    has_filter = options.filter != nullptr;
+    has_filter = asks_filter = of_rays.filter != nullptr;
     is_opaque = false;
     excluded.primitive_id = KIWAMI_INVALID_ID;
-    if (options.exclusions) __builtin_memcpy(&excluded, options.exclusions, sizeof excluded);
+    if (of_rays.exclusions) {
+      __builtin_memcpy(&excluded, of_rays.exclusions + i * of_rays.exclusion_stride,
+                       sizeof excluded);
+    }
   }
 
   /// Goes on in a scene, with the ray as it is there. Nothing beyond reach is of interest.
@@ -63,9 +69,10 @@ struct GeneralQuery : QueryBase<N, AnyLeaves<N>> {
         primitive_id == KIWAMI_INVALID_ID) {
       return false;
     }
-    if (!options.exclusion_paths) return instance_id() == excluded.instance_id;
+    if (!options->exclusion_paths) return instance_id() == excluded.instance_id;
     uint32_t numbers[KIWAMI_MAX_INSTANCE_DEPTH];
-    __builtin_memcpy(numbers, options.exclusion_paths, sizeof numbers);
+    __builtin_memcpy(numbers, options->exclusion_paths + index * options->exclusion_path_stride,
+                     sizeof numbers);
     for (uint32_t i = 0; i < KIWAMI_MAX_INSTANCE_DEPTH; ++i) {
       if (numbers[i] != (i < path.depth ? path.number[i] : KIWAMI_INVALID_ID)) return false;
     }
@@ -76,11 +83,11 @@ struct GeneralQuery : QueryBase<N, AnyLeaves<N>> {
   /// accepted where there is no filter.
   template <typename Describe>
   Verdict ask_filter(float t, uint32_t geometry_id, uint32_t primitive_id, Describe describe) {
-    if (!options.filter || is_opaque) return Verdict::kAccept;
+    if (!asks_filter || is_opaque) return Verdict::kAccept;
     kiwami_filter_candidate candidate;
     candidate.struct_size = sizeof candidate;
     candidate.depth = path.depth;
-    candidate.ray = options.first_ray;
+    candidate.ray = options->first_ray + index;
     candidate.hit.t = t;
     candidate.hit.primitive_id = primitive_id;
     candidate.hit.geometry_id = geometry_id;
@@ -90,7 +97,7 @@ struct GeneralQuery : QueryBase<N, AnyLeaves<N>> {
     for (uint32_t i = 0; i < KIWAMI_MAX_INSTANCE_DEPTH; ++i) {
       candidate.instance_path[i] = i < path.depth ? path.number[i] : KIWAMI_INVALID_ID;
     }
-    switch (options.filter(options.filter_user, &candidate)) {
+    switch (options->filter(options->filter_user, &candidate)) {
       case KIWAMI_FILTER_REJECT:
         return Verdict::kReject;
       case KIWAMI_FILTER_ACCEPT:
@@ -98,7 +105,7 @@ struct GeneralQuery : QueryBase<N, AnyLeaves<N>> {
       case KIWAMI_FILTER_ACCEPT_AND_STOP:
         return Verdict::kStop;
       default:
-        options.report_failed_callback();
+        options->report_failed_callback();
         return Verdict::kStop;
     }
   }
@@ -140,8 +147,8 @@ inline bool offer_triangles(Query& query, const LeafBlock<N>& leaf, uint32_t lan
       return false;
     }
     // What is counted, and what a filter is asked about, comes once.
-    if ((Query::kCounts || (query.options.filter && !is_opaque)) &&
-        scene.tree.has_duplicates != 0 && !is_first_place(scene, *query.ray, leaf, lane, t)) {
+    if ((Query::kCounts || (query.asks_filter && !is_opaque)) && scene.tree.has_duplicates != 0 &&
+        !is_first_place(scene, *query.ray, leaf, lane, t)) {
       return false;
     }
     query.is_opaque = is_opaque;
@@ -163,10 +170,10 @@ struct GeneralClosestHit : GeneralQuery<N> {
   kiwami_hit best;
   InstancePath best_path;
 
-  void begin(const QueryOptions& of_ray, const UnalignedRay& given) {
-    GeneralQuery<N>::begin(of_ray, given);
-    best = ClosestHitQuery<N>::miss();
+  void begin(const QueryOptions& of_rays, size_t i, const UnalignedRay& given) {
+    GeneralQuery<N>::begin(of_rays, i);
     best.t = finite_tmax(given);
+    best.primitive_id = KIWAMI_INVALID_ID;
   }
 
   float reach() const { return best.t; }
@@ -190,7 +197,7 @@ struct GeneralClosestHit : GeneralQuery<N> {
     best.t = t;
     best.geometry_id = geometry_id;
     best.primitive_id = primitive_id;
-    best_path = this->path;
+    copy_path(this->path, best_path);
     this->best_bound = scaled_upper(*this->ray, t);
     describe(best);
     return verdict == Verdict::kStop;
@@ -210,13 +217,15 @@ struct GeneralClosestHit : GeneralQuery<N> {
 
   /// Writes what does not stand in the answer.
   void deliver() const {
-    if (!this->options.instance_paths) return;
+    const QueryOptions& asked = *this->options;
+    if (!asked.instance_paths) return;
     const uint32_t depth = is_found() ? best_path.depth : 0;
     uint32_t numbers[KIWAMI_MAX_INSTANCE_DEPTH];
     for (uint32_t i = 0; i < KIWAMI_MAX_INSTANCE_DEPTH; ++i) {
       numbers[i] = i < depth ? best_path.number[i] : KIWAMI_INVALID_ID;
     }
-    __builtin_memcpy(this->options.instance_paths, numbers, sizeof numbers);
+    __builtin_memcpy(asked.instance_paths + this->index * asked.instance_path_stride, numbers,
+                     sizeof numbers);
   }
 };
 
@@ -227,8 +236,8 @@ struct GeneralWholeRay : GeneralQuery<N> {
 
   float tmax;
 
-  void begin(const QueryOptions& of_ray, const UnalignedRay& given) {
-    GeneralQuery<N>::begin(of_ray, given);
+  void begin(const QueryOptions& of_rays, size_t i, const UnalignedRay& given) {
+    GeneralQuery<N>::begin(of_rays, i);
     tmax = finite_tmax(given);
   }
 
@@ -243,8 +252,8 @@ struct GeneralAnyHit : GeneralWholeRay<N> {
 
   bool is_hit;
 
-  void begin(const QueryOptions& of_ray, const UnalignedRay& given) {
-    GeneralWholeRay<N>::begin(of_ray, given);
+  void begin(const QueryOptions& of_rays, size_t i, const UnalignedRay& given) {
+    GeneralWholeRay<N>::begin(of_rays, i, given);
     is_hit = false;
   }
 
@@ -271,8 +280,8 @@ struct GeneralAllHits : GeneralWholeRay<N> {
 
   uint32_t count;
 
-  void begin(const QueryOptions& of_ray, const UnalignedRay& given) {
-    GeneralWholeRay<N>::begin(of_ray, given);
+  void begin(const QueryOptions& of_rays, size_t i, const UnalignedRay& given) {
+    GeneralWholeRay<N>::begin(of_rays, i, given);
     count = 0;
   }
 

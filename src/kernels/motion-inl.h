@@ -97,9 +97,8 @@ inline void read_corners(const MovingMeshView& mesh, uint32_t primitive, uint32_
 template <int N, typename Strides>
 inline void freeze_indexed(const MovingMeshView& mesh, const uint32_t (&primitives)[N],
                            Strides strides, const TimePlace& place, LeafBlock<N>& frozen) {
-  const vfloat<N> of_start = broadcast<N>(1.0f - place.fraction);
-  const vfloat<N> of_end = broadcast<N>(place.fraction);
   const unsigned char* const vertices = mesh.vertices + place.segment * mesh.step_stride;
+  const float of_start = 1.0f - place.fraction;
 #pragma GCC unroll 3
   for (size_t k = 0; k < 3; ++k) {
     const unsigned char* rows[N];
@@ -109,14 +108,9 @@ inline void freeze_indexed(const MovingMeshView& mesh, const uint32_t (&primitiv
           read_index(mesh.indices + primitives[lane] * strides.index() + k * sizeof(uint32_t));
       rows[lane] = vertices + index * strides.vertex();
     }
-    vfloat<N> start[3], end[3];
-    gather_rows(rows, start);
-#pragma GCC unroll 16
-    for (int lane = 0; lane < N; ++lane) rows[lane] += mesh.step_stride;
-    gather_rows(rows, end);
-    for (int axis = 0; axis < 3; ++axis) {
-      store(frozen.position[k][axis], of_start * start[axis] + of_end * end[axis]);
-    }
+    vfloat<N> columns[3];
+    gather_between(rows, mesh.step_stride, of_start, place.fraction, columns);
+    for (int axis = 0; axis < 3; ++axis) store(frozen.position[k][axis], columns[axis]);
   }
 }
 
@@ -144,34 +138,72 @@ __attribute__((noinline)) uint32_t freeze_each(const MotionPart& part, uint32_t 
   return existing & lanes;
 }
 
-/// The triangles of a leaf at a time: those of the lanes that exist then. The other lanes repeat one
-/// of them.
+/// Makes the triangles of leaves as they are at the time of a ray.
 template <int N>
-inline uint32_t freeze_leaf(const MotionPart& part, const IndexBlock<N>& block, uint32_t lanes,
-                            float time, LeafBlock<N>& frozen) {
-  const uint32_t first = block.id[__builtin_ctz(lanes)];
-  const MovingMeshView& mesh = mesh_of(part, first);
-  uint32_t primitives[N];
-  uint32_t last = 0;
-  for (uint32_t lane = 0; lane < N; ++lane) {
-    const uint32_t id = ((lanes >> lane) & 1u) != 0 ? block.id[lane] : first;
-    frozen.id[lane] = id;
-    primitives[lane] = id - mesh.first_id;
-    last = primitives[lane] > last ? primitives[lane] : last;
+class LeafFreezer {
+ public:
+  LeafFreezer(const MotionPart& part, float time) : part_(part), time_(time) {
+    choose(part.meshes[0]);
   }
-  if (last >= mesh.triangle_count || !mesh.indices) {
-    return freeze_each<N>(part, lanes, time, frozen);
+
+  /// Returns the lanes that exist then. The other lanes are those of any triangles.
+  uint32_t freeze(const IndexBlock<N>& block, uint32_t lanes, LeafBlock<N>& frozen) {
+    __builtin_memcpy(frozen.id, block.id, sizeof frozen.id);
+    const uint32_t first = block.id[__builtin_ctz(lanes)];
+    if (part_.mesh_count > 1) {
+      const MovingMeshView& mesh = mesh_of(part_, first);
+      if (!is_of_one_mesh(block, lanes, mesh)) return freeze_any(first, lanes, frozen);
+      if (&mesh != mesh_) choose(mesh);
+    }
+    if (!exists_) return 0;
+    if (!mesh_->indices) return freeze_any(first, lanes, frozen);
+    // Lanes that are not asked for may be empty, or of another mesh.
+    const uint32_t of_first = first - mesh_->first_id;
+    uint32_t primitives[N];
+#pragma GCC unroll 16
+    for (int lane = 0; lane < N; ++lane) {
+      const uint32_t primitive = block.id[lane] - mesh_->first_id;
+      primitives[lane] = primitive < mesh_->triangle_count ? primitive : of_first;
+    }
+    if (is_dense_) {
+      freeze_indexed<N>(*mesh_, primitives, DenseStrides(), place_, frozen);
+    } else {
+      freeze_indexed<N>(*mesh_, primitives, AnyStrides{mesh_->vertex_stride, mesh_->index_stride},
+                        place_, frozen);
+    }
+    return lanes;
   }
-  TimePlace place;
-  if (!place_in_time(mesh.time, time, place)) return 0;
-  if (mesh.vertex_stride == DenseStrides::vertex() && mesh.index_stride == DenseStrides::index()) {
-    freeze_indexed<N>(mesh, primitives, DenseStrides(), place, frozen);
-  } else {
-    freeze_indexed<N>(mesh, primitives, AnyStrides{mesh.vertex_stride, mesh.index_stride}, place,
-                      frozen);
+
+ private:
+  void choose(const MovingMeshView& mesh) {
+    mesh_ = &mesh;
+    exists_ = place_in_time(mesh.time, time_, place_);
+    is_dense_ =
+        mesh.vertex_stride == DenseStrides::vertex() && mesh.index_stride == DenseStrides::index();
   }
-  return lanes;
-}
+
+  static bool is_of_one_mesh(const IndexBlock<N>& block, uint32_t lanes,
+                             const MovingMeshView& mesh) {
+    for (; lanes; lanes &= lanes - 1) {
+      if (block.id[__builtin_ctz(lanes)] - mesh.first_id >= mesh.triangle_count) return false;
+    }
+    return true;
+  }
+
+  uint32_t freeze_any(uint32_t first, uint32_t lanes, LeafBlock<N>& frozen) const {
+    for (uint32_t lane = 0; lane < N; ++lane) {
+      if (((lanes >> lane) & 1u) == 0) frozen.id[lane] = first;
+    }
+    return freeze_each<N>(part_, lanes, time_, frozen);
+  }
+
+  const MotionPart& part_;
+  float time_;
+  const MovingMeshView* mesh_;  ///< the last one
+  TimePlace place_;             ///< in its time
+  bool exists_;
+  bool is_dense_;
+};
 
 }  // namespace
 }  // namespace KIWAMI_ISA

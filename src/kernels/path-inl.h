@@ -24,6 +24,12 @@ inline bool is_equal(const InstancePath& a, const InstancePath& b) {
   return true;
 }
 
+/// As much of a path as there is.
+inline void copy_path(const InstancePath& from, InstancePath& to) {
+  to.depth = from.depth;
+  for (uint32_t i = 0; i < from.depth; ++i) to.number[i] = from.number[i];
+}
+
 /// Of two hits at one distance: below 0 where a comes first, 0 where they are the same.
 inline int compare_numbers(const kiwami_hit& a, const kiwami_hit& b) {
   if (a.geometry_id != b.geometry_id) return a.geometry_id < b.geometry_id ? -1 : 1;

@@ -59,19 +59,68 @@ inline Segment<double> segment_of(const RawPoint& a, const RawPoint& b) {
   return {{centre_of(a), centre_of(b)}, {a.radius, b.radius}};
 }
 
-/// The points of up to N shapes, by lane. Lanes that are not asked for hold those of another.
+/// Points of up to N shapes, in rows of N lanes.
 template <int N>
-struct PointLanes {
-  float x[N], y[N], z[N], radius[N];
+struct PointRows {
+  const float* rows;
 
-  void set(int lane, const RawPoint& point) {
-    x[lane] = point.x;
-    y[lane] = point.y;
-    z[lane] = point.z;
-    radius[lane] = point.radius;
-  }
+  float x(int lane) const { return rows[lane]; }
+  float y(int lane) const { return rows[N + lane]; }
+  float z(int lane) const { return rows[2 * N + lane]; }
+  float radius(int lane) const { return rows[3 * N + lane]; }
+  RawPoint operator[](int lane) const { return {x(lane), y(lane), z(lane), radius(lane)}; }
+
   Triple<vdouble4> centres(int first) const {
-    return {load_widened(x + first), load_widened(y + first), load_widened(z + first)};
+    return {load_widened(rows + first), load_widened(rows + N + first),
+            load_widened(rows + 2 * N + first)};
+  }
+  vdouble4 radii(int first) const { return load_widened(rows + 3 * N + first); }
+  vfloat<N> row(int i) const { return load<N>(rows + i * N); }
+};
+
+/// The shapes of a leaf block: where they stand as a block of their own, or gathered from the
+/// buffers. Lanes that are not asked for hold others, or zeros.
+template <int N>
+struct ShapeRows {
+  float room[kMostShapeRows][N];
+
+  void set(int lane, int first_row, const RawPoint& point) {
+    room[first_row][lane] = point.x;
+    room[first_row + 1][lane] = point.y;
+    room[first_row + 2][lane] = point.z;
+    room[first_row + 3][lane] = point.radius;
+  }
+
+  /// Gathered: lanes that are not asked for repeat one that is.
+  void gather(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes) {
+    for (int lane = 0; lane < N; ++lane) {
+      const bool is_own = ((lanes >> lane) & 1u) != 0;
+      const ShapePlace place = place_of(source, block.id[is_own ? lane : __builtin_ctz(lanes)]);
+      if (source.kind == ShapeKind::kCurve) {
+        const size_t index = first_point_of(place);
+        set(lane, 0, point_at(*place.view, index));
+        set(lane, 4, point_at(*place.view, index + 1));
+        continue;
+      }
+      set(lane, 0, point_at(*place.view, place.primitive));
+      if (source.kind != ShapeKind::kDisc) continue;
+      const RawNormal normal = normal_at(*place.view, place.primitive);
+      room[4][lane] = normal.x;
+      room[5][lane] = normal.y;
+      room[6][lane] = normal.z;
+    }
+  }
+
+  const float* of(const ShapeSource& source, const TreeView& tree, const IndexBlock<N>& block,
+                  uint32_t lanes) {
+    if (!source.blocks) {
+      gather(source, block, lanes);
+      return room[0];
+    }
+    const auto* const at = reinterpret_cast<const unsigned char*>(block.id);
+    const uint64_t begin = static_cast<uint64_t>(at - tree.memory) - source.leaf_begin;
+    // A leaf block has one row, of ids.
+    return source.blocks + begin / sizeof(uint32_t) * shape_rows(source.kind);
   }
 };
 
@@ -127,104 +176,125 @@ struct ShapeSieve {
 };
 
 template <int N, typename Sieve>
-inline bool visit_spheres(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
-                          const Sieve& sieve) {
-  PointLanes<N> points;
-  ShapePlace places[N];
-  for (int lane = 0; lane < N; ++lane) {
-    const bool is_own = ((lanes >> lane) & 1u) != 0;
-    places[lane] = place_of(source, block.id[is_own ? lane : __builtin_ctz(lanes)]);
-    points.set(lane, point_at(*places[lane].view, places[lane].primitive));
-  }
+inline bool visit_spheres(const ShapeSource& source, const float* rows, const IndexBlock<N>& block,
+                          uint32_t lanes, const Sieve& sieve) {
+  const PointRows<N> points{rows};
   const WideRay<vdouble4> ray = spread_ray(sieve.wide);
   double middle[N], squared_half[N];
   uint32_t met = 0;
   for (int first = 0; first < N; first += 4) {
     if (((lanes >> first) & 0xFu) == 0) continue;
     const Passage<vdouble4> passage =
-        pass_sphere(ray, ray.origin - points.centres(first), load_widened(points.radius + first));
+        pass_sphere(ray, ray.origin - points.centres(first), points.radii(first));
     store(middle + first, passage.middle);
     store(squared_half + first, passage.squared_half);
     met |= positive_lanes(passage.squared_half, first);
   }
   for (met &= lanes; met; met &= met - 1) {
     const int lane = __builtin_ctz(met);
-    if (sieve.is_masked(places[lane])) continue;
+    const ShapePlace place = place_of(source, block.id[lane]);
+    if (sieve.is_masked(place)) continue;
     SegmentInterval interval;
     interval.add({middle[lane], squared_half[lane]}, 0.0);
-    if (sieve.pass(interval, places[lane])) return true;
+    if (sieve.pass(interval, place)) return true;
   }
   return false;
 }
 
 template <int N, typename Sieve>
-inline bool visit_discs(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
-                        const Sieve& sieve) {
-  for (; lanes; lanes &= lanes - 1) {
-    const ShapePlace place = place_of(source, block.id[__builtin_ctz(lanes)]);
+inline bool visit_discs(const ShapeSource& source, const float* rows, const IndexBlock<N>& block,
+                        uint32_t lanes, const Sieve& sieve) {
+  const PointRows<N> points{rows};
+  const float* const normals = rows + 4 * N;
+  const WideRay<vdouble4> ray = spread_ray(sieve.wide);
+  double t[N], facing[N];
+  uint32_t met = 0;
+  for (int first = 0; first < N; first += 4) {
+    if (((lanes >> first) & 0xFu) == 0) continue;
+    const Triple<vdouble4> normal = {load_widened(normals + first),
+                                     load_widened(normals + N + first),
+                                     load_widened(normals + 2 * N + first)};
+    const PlaneMeeting<vdouble4> meeting =
+        meet_plane(ray, ray.origin - points.centres(first), normal);
+    const vdouble4 radius = points.radii(first);
+    store(t + first, meeting.t);
+    store(facing + first, meeting.facing);
+    met |= greater(radius * radius, meeting.squared_distance) << first;
+  }
+  for (met &= lanes; met; met &= met - 1) {
+    const int lane = __builtin_ctz(met);
+    const ShapePlace place = place_of(source, block.id[lane]);
     if (sieve.is_masked(place)) continue;
-    const RawPoint point = point_at(*place.view, place.primitive);
-    const PlaneMeeting<double> meeting =
-        meet_plane(sieve.wide, sieve.wide.origin - centre_of(point),
-                   triple_of(normal_at(*place.view, place.primitive)));
-    const double radius = point.radius;
-    if (!(meeting.squared_distance < radius * radius)) continue;
-    const ShapeCrossing crossing = {static_cast<float>(meeting.t), meeting.facing < 0.0, meeting.t,
-                                    0.0, place};
+    const ShapeCrossing crossing = {static_cast<float>(t[lane]), facing[lane] < 0.0, t[lane], 0.0,
+                                    place};
     if (sieve.pass(crossing)) return true;
   }
   return false;
 }
 
-/// Which of four segments, first on, the ray may meet: where none of their spheres is met and the
-/// cone neither is nor is left to the careful form, it does not.
+/// Which segments' capsules, as wide as their greater radius, the ray may meet. Most rays miss most
+/// of a leaf, which single precision tells in all lanes at once; the others are looked at in double.
+///
+/// The ends are projected along the ray, and the nearest point of the line between them is compared
+/// with the radius. With u = 2^-24 and f an end seen from the origin, the unit direction and the
+/// projection are off by less than 16 u |f|, the place of the nearest point by 4 u |f|, and the point
+/// by 3 u |f|, less than half of kCapsuleMargin. The other half is more than what a crossing of the
+/// cone may lie outside (kConeTolerance). Lanes that overflow are kept, and so are tiny ones.
 template <int N>
-inline uint32_t may_meet(const WideRay<vdouble4>& ray, const PointLanes<N> (&points)[2],
-                         int first) {
-  const Segment<vdouble4> segment = {
-      {points[0].centres(first), points[1].centres(first)},
-      {load_widened(points[0].radius + first), load_widened(points[1].radius + first)}};
-  const Triple<vdouble4> offset = ray.origin - segment.centre[0];
-  const Passage<vdouble4> begin = pass_sphere(ray, offset, segment.radius[0]);
-  const Passage<vdouble4> end = pass_sphere(ray, ray.origin - segment.centre[1], segment.radius[1]);
-  const ConeFrame<vdouble4> cone = frame_cone(ray, segment, offset, begin.middle, end.middle);
-  const Passage<vdouble4> side = pass_cone(cone, ray, segment.radius[0]);
-  const uint32_t usual =
-      greater(cone.leading, broadcast_double(kLeastLeading) * (cone.slope * ray.squared));
-  return (positive_lanes(begin.squared_half, 0) | positive_lanes(end.squared_half, 0) |
-          positive_lanes(side.squared_half, 0) | (usual ^ 0xFu))
-         << first;
+inline uint32_t near_lanes(const ReadyRay& ray, const float (&unit)[3],
+                           const PointRows<N> (&points)[2]) {
+  constexpr float kCapsuleMargin = 0x1p-18f, kLeastReach = 0x1p-60f, kGreatestSize = 0x1p+60f;
+  static_assert(kCapsuleMargin >= 2 * kConeTolerance);
+  const auto product = [](const vfloat<N>(&a)[3], const vfloat<N>(&b)[3]) {
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+  };
+  const vfloat<N> along[3] = {broadcast<N>(unit[0]), broadcast<N>(unit[1]), broadcast<N>(unit[2])};
+  const vfloat<N> radius[2] = {points[0].row(3), points[1].row(3)};
+  vfloat<N> size = radius[0] + radius[1];
+  vfloat<N> end[2][3];
+  for (int k = 0; k < 2; ++k) {
+    vfloat<N> offset[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      offset[axis] = points[k].row(axis) - broadcast<N>(ray.origin[axis]);
+      size = size + absolute(offset[axis]);
+    }
+    const vfloat<N> distance = product(offset, along);
+    for (int axis = 0; axis < 3; ++axis) end[k][axis] = offset[axis] - distance * along[axis];
+  }
+  const vfloat<N> line[3] = {end[1][0] - end[0][0], end[1][1] - end[0][1], end[1][2] - end[0][2]};
+  const vfloat<N> zero = broadcast<N>(0.0f);
+  const vfloat<N> place =
+      min(max((zero - product(end[0], line)) / product(line, line), zero), broadcast<N>(1.0f));
+  const vfloat<N> nearest[3] = {end[0][0] + place * line[0], end[0][1] + place * line[1],
+                                end[0][2] + place * line[2]};
+  const vfloat<N> reach =
+      max(radius[0], radius[1]) + (broadcast<N>(kCapsuleMargin) * size + broadcast<N>(kLeastReach));
+  const uint32_t missed = less_equal(reach * reach, product(nearest, nearest)) &
+                          less_equal(size, broadcast<N>(kGreatestSize));
+  return ~missed;
 }
 
 template <int N, typename Sieve>
-inline bool visit_curves(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
-                         const Sieve& sieve) {
-  PointLanes<N> points[2];
-  ShapePlace places[N];
-  for (int lane = 0; lane < N; ++lane) {
-    const bool is_own = ((lanes >> lane) & 1u) != 0;
-    places[lane] = place_of(source, block.id[is_own ? lane : __builtin_ctz(lanes)]);
-    const size_t index = first_point_of(places[lane]);
-    points[0].set(lane, point_at(*places[lane].view, index));
-    points[1].set(lane, point_at(*places[lane].view, index + 1));
-  }
-  const WideRay<vdouble4> ray = spread_ray(sieve.wide);
-  uint32_t met = 0;
-  for (int first = 0; first < N; first += 4) {
-    if (((lanes >> first) & 0xFu) != 0) met |= may_meet<N>(ray, points, first);
-  }
-  for (met &= lanes; met; met &= met - 1) {
-    const int lane = __builtin_ctz(met);
-    if (sieve.is_masked(places[lane])) continue;
-    const auto raw = [&](int k) {
-      return RawPoint{points[k].x[lane], points[k].y[lane], points[k].z[lane],
-                      points[k].radius[lane]};
-    };
-    const SegmentInterval interval = cross_segment(sieve.wide, segment_of(raw(0), raw(1)));
-    if (!interval.is_empty && sieve.pass(interval, places[lane])) return true;
+inline bool visit_curves(const ShapeSource& source, const float* rows, const IndexBlock<N>& block,
+                         const float (&unit)[3], uint32_t lanes, const Sieve& sieve) {
+  const PointRows<N> points[2] = {{rows}, {rows + 4 * N}};
+  lanes &= near_lanes(sieve.ray, unit, points);
+  for (; lanes; lanes &= lanes - 1) {
+    const int lane = __builtin_ctz(lanes);
+    const ShapePlace place = place_of(source, block.id[lane]);
+    if (sieve.is_masked(place)) continue;
+    const SegmentInterval interval =
+        cross_segment(sieve.wide, segment_of(points[0][lane], points[1][lane]));
+    if (!interval.is_empty && sieve.pass(interval, place)) return true;
   }
   return false;
 }
+
+/// A ray as the tests of shapes read it.
+struct ShapeRay {
+  WideRay<double> wide;
+  float unit[3];  ///< the direction, for curve segments
+};
 
 inline WideRay<double> widen_ray(const UnalignedRay& ray) {
   const float origin[3] = {ray.origin_x, ray.origin_y, ray.origin_z};
@@ -232,15 +302,30 @@ inline WideRay<double> widen_ray(const UnalignedRay& ray) {
   return widen_ray(origin, direction);
 }
 
-/// Calls accept(crossing) for each crossing of the lanes' shapes that the ray meets, until accept
-/// returns true; then returns true.
+inline ShapeRay shape_ray(const UnalignedRay& given, ShapeKind kind) {
+  ShapeRay ray;
+  ray.wide = widen_ray(given);
+  if (kind != ShapeKind::kCurve) return ray;
+  const double inverse = 1.0 / square_root(ray.wide.squared);
+  ray.unit[0] = static_cast<float>(ray.wide.direction.x * inverse);
+  ray.unit[1] = static_cast<float>(ray.wide.direction.y * inverse);
+  ray.unit[2] = static_cast<float>(ray.wide.direction.z * inverse);
+  return ray;
+}
+
+/// Calls accept(crossing) for each crossing of the shapes of a leaf of a tree that the ray meets,
+/// until accept returns true; then returns true.
 template <int N, typename Accept>
-inline bool visit_shapes(const ShapeSource& source, const IndexBlock<N>& block, uint32_t lanes,
-                         const ReadyRay& ray, const WideRay<double>& wide, Accept accept) {
-  const ShapeSieve<Accept> sieve{ray, wide, accept};
-  if (source.kind == ShapeKind::kSphere) return visit_spheres<N>(source, block, lanes, sieve);
-  if (source.kind == ShapeKind::kDisc) return visit_discs<N>(source, block, lanes, sieve);
-  return visit_curves<N>(source, block, lanes, sieve);
+inline bool visit_shapes(const ShapeSource& source, const TreeView& tree, ChildReference leaf,
+                         const ReadyRay& ready, const ShapeRay& ray, Accept accept) {
+  const ShapeSieve<Accept> sieve{ready, ray.wide, accept};
+  const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, leaf);
+  const uint32_t lanes = leaf.mask();
+  ShapeRows<N> gathered;
+  const float* const rows = gathered.of(source, tree, block, lanes);
+  if (source.kind == ShapeKind::kSphere) return visit_spheres(source, rows, block, lanes, sieve);
+  if (source.kind == ShapeKind::kDisc) return visit_discs(source, rows, block, lanes, sieve);
+  return visit_curves(source, rows, block, ray.unit, lanes, sieve);
 }
 
 /// Fills in what a hit says of the shape: u, v and the normal, each rounded once.

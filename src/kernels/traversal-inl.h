@@ -6,6 +6,12 @@
 #include "kernels/probe-inl.h"
 #include "kernels/query-inl.h"
 
+// How the functions that choose among children are inlined. Objects with many traversals force it,
+// since GCC would call them there.
+#ifndef KIWAMI_INLINE_CHOICE
+#define KIWAMI_INLINE_CHOICE inline
+#endif
+
 namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
@@ -56,8 +62,9 @@ inline StackEntry* insert_farthest_first(StackEntry* bottom, StackEntry* top,
 /// Puts the nearest of the hit slots into next and the others onto the stack, farthest first.
 /// Returns the new top of the stack.
 template <int N>
-inline StackEntry* choose_nearest(const TreeView& tree, const WideNode<N>& node, uint32_t hits,
-                                  const float* entry, StackEntry* top, StackEntry& next) {
+KIWAMI_INLINE_CHOICE StackEntry* choose_nearest(const TreeView& tree, const WideNode<N>& node,
+                                                uint32_t hits, const float* entry, StackEntry* top,
+                                                StackEntry& next) {
   int slot = __builtin_ctz(hits);
   hits &= hits - 1;
   next = child_of(node, slot, entry[slot]);
@@ -80,8 +87,9 @@ inline StackEntry* choose_nearest(const TreeView& tree, const WideNode<N>& node,
 /// Puts the first of the hit slots into next and the others onto the stack, in their order. Their
 /// entry distances are copied only for those that look at them.
 template <int N, bool kNeedsEntry>
-inline StackEntry* choose_first(const TreeView& tree, const WideNode<N>& node, uint32_t hits,
-                                const float* entry, StackEntry* top, StackEntry& next) {
+KIWAMI_INLINE_CHOICE StackEntry* choose_first(const TreeView& tree, const WideNode<N>& node,
+                                              uint32_t hits, const float* entry, StackEntry* top,
+                                              StackEntry& next) {
   for (; hits & (hits - 1);) {
     const int slot = 31 - __builtin_clz(hits);
     top->subtree = node.child[slot];

@@ -207,6 +207,18 @@ KIWAMI_INLINE void gather_rows(const unsigned char* const (&rows)[N], vfloat<N> 
     for (int k = 0; k < 3; ++k) columns[k].lane[i] = row[k];
   }
 }
+/// The same of rows that lie between two of three floats: row i is start * (that at rows[i]) + end *
+/// (that step bytes further), each product rounded.
+template <int N>
+KIWAMI_INLINE void gather_between(const unsigned char* const (&rows)[N], size_t step, float start,
+                                  float end, vfloat<N> (&columns)[3]) {
+  for (int i = 0; i < N; ++i) {
+    float first[3], last[3];
+    __builtin_memcpy(first, rows[i], sizeof first);
+    __builtin_memcpy(last, rows[i] + step, sizeof last);
+    for (int k = 0; k < 3; ++k) columns[k].lane[i] = start * first[k] + end * last[k];
+  }
+}
 /// Writes row i of four columns to the floats that lie offset bytes into *targets[i].
 template <int N, typename Target>
 KIWAMI_INLINE void store_rows(const vfloat<N> (&columns)[4], Target* const* targets,

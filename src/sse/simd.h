@@ -33,6 +33,17 @@ inline void gather_rows(const unsigned char* const (&rows)[4], vfloat<4> (&colum
   transpose(row, column);
   for (int k = 0; k < 3; ++k) columns[k].value = column[k];
 }
+inline void gather_between(const unsigned char* const (&rows)[4], size_t step, float start,
+                           float end, vfloat<4> (&columns)[3]) {
+  const simde__m128 of_start = simde_mm_set1_ps(start), of_end = simde_mm_set1_ps(end);
+  simde__m128 row[4], column[4];
+  for (int i = 0; i < 4; ++i) {
+    row[i] = simde_mm_add_ps(simde_mm_mul_ps(of_start, load_three(rows[i])),
+                             simde_mm_mul_ps(of_end, load_three(rows[i] + step)));
+  }
+  transpose(row, column);
+  for (int k = 0; k < 3; ++k) columns[k].value = column[k];
+}
 
 struct vdouble4 {
   simde__m128d low, high;

@@ -27,11 +27,22 @@ struct ShapeView {
   uint32_t mask;
 };
 
-/// All geometries of one kind in a scene, by rising first_id, without gaps.
+/// All geometries of one kind in a scene, by rising first_id, without gaps, and the shapes of each
+/// leaf block of their tree as its lanes have them, so that rays need not look for them in the
+/// buffers: shape_rows(kind) rows of floats. Lanes that hold none are zero.
 struct ShapeSource {
   const ShapeView* views;
   uint32_t view_count;
   ShapeKind kind;
+  const float* blocks;  ///< nullptr: rays read the buffers
+  uint64_t leaf_begin;  ///< of the leaf blocks, in bytes into the tree's memory
 };
+
+/// Rows of a block: x, y, z and radius of a point; then those of a segment's second point, or the
+/// normal of a disc.
+constexpr uint32_t shape_rows(ShapeKind kind) {
+  return kind == ShapeKind::kSphere ? 4 : kind == ShapeKind::kDisc ? 7 : 8;
+}
+constexpr uint32_t kMostShapeRows = 8;
 
 }  // namespace kiwami

@@ -4,10 +4,8 @@
 // all limits, sizes of structs that are none. Each call comes back with one of the documented
 // results, with a sentence if it is an error, and at the end all memory is back.
 #include <array>
-#include <cmath>
-#include <limits>
 
-#include "fuzz/handles.h"
+#include "fuzz/call_geometries.h"
 #include "support/exercise.h"
 #include "support/random.h"
 
@@ -16,13 +14,12 @@ namespace {
 
 /// Few, so that calls that belong together meet.
 constexpr uint32_t kSlots = 2;
-constexpr uint32_t kMostElements = 40;
 constexpr uint32_t kMostCalls = 96;
 
 /// One run.
 class Session {
  public:
-  Session(Input& input, CountedMemory& memory) : input_(input) {
+  Session(Input& input, CountedMemory& memory) : arguments_(input) {
     const uint32_t flags = input.below(2) == 0 ? KIWAMI_DEVICE_VALIDATE : 0;
     validates_ = flags != 0;
     device_ = make_device(KIWAMI_ISA_AUTO, flags, &memory);
@@ -30,7 +27,7 @@ class Session {
   }
 
   void run() {
-    for (uint32_t i = 0; i < kMostCalls && !input_.is_empty(); ++i) call();
+    for (uint32_t i = 0; i < kMostCalls && !arguments_.is_empty(); ++i) call();
   }
 
  private:
@@ -42,57 +39,19 @@ class Session {
         &Session::set_parameter, &Session::set_optimizers, &Session::commit,
         &Session::commit,        &Session::trace,          &Session::trace,
         &Session::trace_fields,  &Session::trace_many,     &Session::get_info,
-        &Session::create_shapes, &Session::edit_scene,     &Session::edit_mesh,
-        &Session::refit,         &Session::sample_lights,  &Session::get_bvh,
-        &Session::build_bvh,     &Session::refit_bvh,      &Session::save_and_load,
-        &Session::exercise_all,  &Session::release};
-    (this->*kSteps[input_.below(std::size(kSteps))])();
+        &Session::create_other,  &Session::create_other,   &Session::edit_scene,
+        &Session::edit_mesh,     &Session::edit_opacity,   &Session::refit,
+        &Session::sample_lights, &Session::get_bvh,        &Session::build_bvh,
+        &Session::refit_bvh,     &Session::save_and_load,  &Session::exercise_all,
+        &Session::release};
+    (this->*kSteps[below(std::size(kSteps))])();
   }
 
-  kiwami_result check(kiwami_result result) {
-    require(result <= KIWAMI_OK && result >= KIWAMI_ERROR_CANCELLED, "a result that is none");
-    require(result != KIWAMI_ERROR_INTERNAL, "an internal error");
-    if (result != KIWAMI_OK) {
-      require(kiwami_last_error(nullptr, nullptr, 0) > 1, "an error without a sentence");
-    }
-    return result;
-  }
-
-  float number() {
-    constexpr float kNumbers[] = {0.0f,
-                                  -0.0f,
-                                  1.0f,
-                                  std::numeric_limits<float>::quiet_NaN(),
-                                  std::numeric_limits<float>::infinity(),
-                                  -std::numeric_limits<float>::infinity(),
-                                  std::numeric_limits<float>::max(),
-                                  std::numeric_limits<float>::denorm_min(),
-                                  KIWAMI_MAX_COORDINATE};
-    const auto form = input_.take<uint8_t>();
-    if (form < std::size(kNumbers)) return kNumbers[form];
-    if (form < 20) return input_.take<float>();
-    return static_cast<float>(form) / 64.0f - 2.0f;
-  }
-
-  std::vector<float> numbers(size_t count) {
-    std::vector<float> made(count);
-    for (float& value : made) value = number();
-    return made;
-  }
-
-  uint32_t whole() {
-    constexpr uint32_t kNumbers[] = {0, 1, 2, 7, 255, 256, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF};
-    return kNumbers[input_.below(std::size(kNumbers))];
-  }
-
-  /// A struct_size that is wrong but not beyond what is there, or so large that nothing is read.
-  uint32_t wrong_size(size_t size) {
-    const uint32_t sizes[] = {0, 1, 7, static_cast<uint32_t>(size) - 4, 0x10001, 0xFFFFFFFF};
-    return sizes[input_.below(std::size(sizes))];
-  }
-
-  bool rarely() { return input_.below(16) == 0; }
-  uint32_t slot() { return input_.below(kSlots); }
+  bool rarely() { return arguments_.rarely(); }
+  uint32_t below(uint32_t count) { return arguments_.below(count); }
+  uint32_t whole() { return arguments_.whole(); }
+  float number() { return arguments_.number(); }
+  uint32_t slot() { return below(kSlots); }
   kiwami_scene* scene() { return rarely() ? nullptr : scenes_[slot()].get(); }
   kiwami_geometry* geometry() { return rarely() ? nullptr : geometries_[slot()].get(); }
   kiwami_bvh* bvh() { return rarely() ? nullptr : bvhs_[slot()].get(); }
@@ -101,64 +60,25 @@ class Session {
     return rarely() ? other_device_.get() : device_.get();
   }
 
-  void create_mesh() {
-    const uint32_t triangles = input_.below(kMostElements);
-    const size_t stride = 12 + input_.below(5);
-    const size_t vertices = 3 * size_t{triangles};
-    // Buffers of just the size that is described.
-    const std::vector<float> corners = numbers(3 * vertices);
-    std::vector<unsigned char> bytes(vertices == 0 ? 0 : (vertices - 1) * stride + 12);
-    for (size_t i = 0; i < vertices; ++i) {
-      std::memcpy(bytes.data() + i * stride, corners.data() + 3 * i, 12);
-    }
-    std::vector<uint32_t> indices(vertices);
-    for (uint32_t& index : indices) index = rarely() ? whole() : input_.below(3 * triangles + 1);
-    kiwami_triangle_mesh_desc desc;
-    check(kiwami_triangle_mesh_desc_init(&desc, sizeof desc));
-    desc.vertices = bytes.data();
-    desc.vertex_count = vertices;
-    desc.vertex_stride = stride;
-    desc.triangle_count = triangles;
-    desc.mask = rarely() ? whole() : ~0u;
-    if (input_.below(2) == 0) desc.indices = indices.data();
-    if (rarely()) spoil(desc);
-    kiwami_geometry* made = nullptr;
-    const kiwami_result result =
-        check(kiwami_triangle_mesh_create(device(), rarely() ? nullptr : &desc, &made));
-    require((result == KIWAMI_OK) == (made != nullptr), "a mesh and an error");
-    geometries_[slot()].reset(made);
-  }
+  void create_mesh() { geometries_[slot()] = make_mesh(arguments_, device()); }
 
-  /// Makes one field impossible, in a way that must be found before anything is read.
-  void spoil(kiwami_triangle_mesh_desc& desc) {
-    switch (input_.below(8)) {
+  void create_other() {
+    Geometry made;
+    switch (arguments_.below(4)) {
       case 0:
-        desc.struct_size = whole() % 8;
+        made = make_shapes(arguments_, device());
         break;
       case 1:
-        desc.flags = 0x80u;
+        made = make_moving_mesh(arguments_, device());
         break;
       case 2:
-        desc.vertex_count = uint64_t{1} << (33 + input_.below(30));
-        break;
-      case 3:
-        desc.triangle_count = uint64_t{1} << (32 + input_.below(30));
-        break;
-      case 4:
-        desc.vertex_stride = 1 + input_.below(11);
-        break;
-      case 5:
-        desc.reserved = 1;
-        break;
-      case 6:
-        desc.vertices = nullptr;
-        desc.vertex_count = 1;
+        made = make_user_geometry(arguments_, device());
         break;
       default:
-        desc.vertex_stride = UINT64_MAX - 3;
-        desc.vertex_count = 3;
+        made = make_instances(arguments_, device(), scene());
         break;
     }
+    geometries_[slot()] = std::move(made);
   }
 
   void create_scene() {
@@ -172,17 +92,17 @@ class Session {
     check(kiwami_scene_attach(scene(), geometry(), rarely() ? nullptr : &id));
   }
 
-  void detach() { check(kiwami_scene_detach(scene(), rarely() ? whole() : input_.below(6))); }
+  void detach() { check(kiwami_scene_detach(scene(), rarely() ? whole() : below(6))); }
 
   void set_parameter() {
-    const double value = rarely() ? static_cast<double>(number()) : input_.below(20);
-    check(kiwami_scene_set_parameter(scene(), rarely() ? whole() : input_.below(48), value));
+    const double value = rarely() ? static_cast<double>(number()) : below(20);
+    check(kiwami_scene_set_parameter(scene(), rarely() ? whole() : below(48), value));
   }
 
   void set_optimizers() {
     uint32_t methods[12];
-    for (uint32_t& method : methods) method = rarely() ? whole() : input_.below(9);
-    check(kiwami_scene_set_optimizers(scene(), rarely() ? nullptr : methods, input_.below(12)));
+    for (uint32_t& method : methods) method = rarely() ? whole() : below(9);
+    check(kiwami_scene_set_optimizers(scene(), rarely() ? nullptr : methods, below(12)));
   }
 
   void commit() {
@@ -191,40 +111,26 @@ class Session {
     require(kiwami_scene_validate(target) == KIWAMI_OK, "a tree that is not valid");
   }
 
-  void create_shapes() {
-    const size_t count = input_.below(kMostElements);
-    const std::vector<float> points = numbers(4 * count);
-    kiwami_spheres_desc desc;
-    check(kiwami_spheres_desc_init(&desc, sizeof desc));
-    desc.points = points.data();
-    desc.sphere_count = count;
-    if (rarely()) desc.point_stride = 1 + input_.below(15);
-    if (rarely()) desc.struct_size = wrong_size(sizeof desc);
-    if (rarely()) desc.sphere_count = uint64_t{1} << (32 + input_.below(30));
-    kiwami_geometry* made = nullptr;
-    check(kiwami_spheres_create(device(), &desc, &made));
-    geometries_[slot()].reset(made);
-  }
-
   void edit_scene() {
     kiwami_scene* const target = scene();
-    check(kiwami_scene_enable(target, input_.below(4), static_cast<int32_t>(input_.below(2))));
-    check(kiwami_scene_replace(target, input_.below(4), geometry()));
+    check(kiwami_scene_enable(target, below(4), static_cast<int32_t>(below(2))));
+    check(kiwami_scene_replace(target, below(4), geometry()));
   }
 
   void edit_mesh() {
-    // As many as a mesh of these calls can have, so that none reads beyond.
-    const std::vector<float> vertices = numbers(size_t{9} * kMostElements);
+    const std::vector<float> vertices = arguments_.numbers(size_t{3} * kMostVertices);
     kiwami_geometry* const target = geometry();
     check(kiwami_triangle_mesh_update_vertices(target, rarely() ? nullptr : vertices.data(), 0,
                                                rarely() ? 5 : 0));
     check(kiwami_geometry_set_mask(target, whole()));
   }
 
+  void edit_opacity() { set_opacity(arguments_, geometry()); }
+
   /// A refit or a commit, which is cancelled after some steps.
   void refit() {
     kiwami_scene* const target = scene();
-    uint32_t steps = input_.below(12);
+    uint32_t steps = below(12);
     check(kiwami_scene_set_progress(
         target,
         [](void* user, double) {
@@ -232,7 +138,7 @@ class Session {
           return int32_t{left == 0 ? 1 : (--left, 0)};
         },
         &steps));
-    check(input_.below(2) == 0 ? kiwami_scene_refit(target) : kiwami_scene_commit(target));
+    check(below(2) == 0 ? kiwami_scene_refit(target) : kiwami_scene_commit(target));
     check(kiwami_scene_set_progress(target, nullptr, nullptr));
     check(kiwami_scene_refit(target));
   }
@@ -240,11 +146,11 @@ class Session {
   void sample_lights() {
     kiwami_light_tree* tree = nullptr;
     if (check(kiwami_light_tree_create(device(), nullptr, &tree)) != KIWAMI_OK) return;
-    std::vector<kiwami_light> lights(input_.below(kMostElements));
+    std::vector<kiwami_light> lights(below(kMostElements));
     for (kiwami_light& light : lights) {
       light = {};
-      light.type = rarely() ? whole() : input_.below(8);
-      light.flags = input_.below(2);
+      light.type = rarely() ? whole() : below(8);
+      light.flags = below(2);
       for (float& coordinate : light.points) coordinate = number();
       for (float& coordinate : light.direction) coordinate = number();
       light.radius = number();
@@ -257,7 +163,7 @@ class Session {
     }
     std::vector<kiwami_light_receiver> receivers(4);
     std::vector<kiwami_light_choice> choices(4);
-    const std::vector<float> values = numbers(sizeof(kiwami_light_receiver));
+    const std::vector<float> values = arguments_.numbers(sizeof(kiwami_light_receiver));
     std::memcpy(static_cast<void*>(receivers.data()), values.data(),
                 receivers.size() * sizeof receivers[0]);
     check(kiwami_light_sample(tree, receivers.data(), 0, choices.data(), 0, 4, nullptr));
@@ -280,15 +186,15 @@ class Session {
 
   /// A query with flags that may be unknown; NULL for none.
   const kiwami_query* query() {
-    if (input_.below(2) == 0) return nullptr;
+    if (below(2) == 0) return nullptr;
     kiwami_query_init(&query_, sizeof query_);
-    query_.flags = rarely() ? whole() : input_.below(2);
-    if (rarely()) query_.struct_size = wrong_size(sizeof query_);
+    query_.flags = rarely() ? whole() : below(2);
+    if (rarely()) query_.struct_size = arguments_.wrong_size(sizeof query_);
     return &query_;
   }
 
   void trace() {
-    const size_t count = input_.below(kMostElements);
+    const size_t count = below(kMostElements);
     const std::vector<kiwami_ray> given = rays(count);
     std::vector<kiwami_hit> hits(count);
     std::vector<uint8_t> occluded(count);
@@ -306,7 +212,7 @@ class Session {
   }
 
   void trace_fields() {
-    const size_t count = input_.below(kMostElements);
+    const size_t count = below(kMostElements);
     const std::vector<kiwami_ray> given = rays(count);
     std::vector<kiwami_hit> hits(count);
     kiwami_ray_fields fields;
@@ -324,20 +230,20 @@ class Session {
     }
     if (count != 0) answers.t = {&hits[0].t, sizeof(kiwami_hit)};
     if (count != 0 && rarely()) answers.primitive_id = {&hits[0].primitive_id, sizeof(kiwami_hit)};
-    if (rarely()) fields.struct_size = wrong_size(sizeof fields);
-    if (rarely()) answers.struct_size = wrong_size(sizeof answers);
+    if (rarely()) fields.struct_size = arguments_.wrong_size(sizeof fields);
+    if (rarely()) answers.struct_size = arguments_.wrong_size(sizeof answers);
     check(kiwami_closest_hit_fields(scene(), rarely() ? nullptr : &fields,
                                     rarely() ? nullptr : &answers, count, query()));
   }
 
   void trace_many() {
-    const size_t count = input_.below(kMostElements);
+    const size_t count = below(kMostElements);
     const std::vector<kiwami_ray> given = rays(count);
-    std::vector<kiwami_hit> hits(input_.below(64));
+    std::vector<kiwami_hit> hits(below(64));
     std::vector<uint64_t> offsets(count + 1);
     std::vector<uint32_t> counts(count);
     kiwami_scene* const target = scene();
-    check(kiwami_multi_hit(target, given.data(), 0, count, rarely() ? whole() : input_.below(6),
+    check(kiwami_multi_hit(target, given.data(), 0, count, rarely() ? whole() : below(6),
                            hits.data(), hits.size(), offsets.data(), query()));
     check(kiwami_count_hits(target, given.data(), 0, counts.data(), 0, count, query()));
   }
@@ -362,36 +268,36 @@ class Session {
   }
 
   void build_bvh() {
-    const size_t count = input_.below(kMostElements);
-    const std::vector<float> boxes = numbers(6 * count);
+    const size_t count = below(kMostElements);
+    const std::vector<float> boxes = arguments_.numbers(6 * count);
     kiwami_parameter_value parameters[3];
     for (kiwami_parameter_value& parameter : parameters) {
-      parameter = {input_.below(32), rarely() ? 1u : 0u, static_cast<double>(input_.below(16))};
+      parameter = {below(32), rarely() ? 1u : 0u, static_cast<double>(below(16))};
     }
-    uint32_t optimizer = input_.below(8);
+    uint32_t optimizer = below(8);
     kiwami_bvh_desc desc;
     check(kiwami_bvh_desc_init(&desc, sizeof desc));
     constexpr uint32_t kWidths[] = {0, 2, 4, 8, 16, 3, 0xFFFFFFFF};
-    desc.width = kWidths[input_.below(std::size(kWidths))];
-    if (input_.below(3) != 0) {
+    desc.width = kWidths[below(std::size(kWidths))];
+    if (below(3) != 0) {
       desc.boxes = boxes.data();
       desc.box_count = count;
     }
-    if (input_.below(3) == 0) desc.geometry = geometry();
-    if (rarely()) desc.box_stride = 1 + input_.below(23);
-    if (input_.below(2) == 0) desc.parameters = parameters;
-    desc.parameter_count = input_.below(4);
-    if (input_.below(2) == 0) desc.optimizers = &optimizer;
-    desc.optimizer_count = input_.below(2);
-    if (rarely()) desc.box_count = uint64_t{1} << (32 + input_.below(31));
+    if (below(3) == 0) desc.geometry = geometry();
+    if (rarely()) desc.box_stride = 1 + below(23);
+    if (below(2) == 0) desc.parameters = parameters;
+    desc.parameter_count = below(4);
+    if (below(2) == 0) desc.optimizers = &optimizer;
+    desc.optimizer_count = below(2);
+    if (rarely()) desc.box_count = arguments_.huge();
     kiwami_bvh* made = nullptr;
     check(kiwami_bvh_build(device(), &desc, &made));
     bvhs_[slot()].reset(made);
   }
 
   void refit_bvh() {
-    const size_t count = input_.below(kMostElements);
-    const std::vector<float> boxes = numbers(6 * count);
+    const size_t count = below(kMostElements);
+    const std::vector<float> boxes = arguments_.numbers(6 * count);
     check(kiwami_bvh_refit(bvh(), rarely() ? nullptr : boxes.data(), 0, count));
   }
 
@@ -402,10 +308,10 @@ class Session {
     check(kiwami_save_desc_init(&save, sizeof save));
     check(kiwami_load_desc_init(&load, sizeof load));
     load.data = save.data = file.data();
-    save.capacity = rarely() ? input_.below(4096) : file.size();
+    save.capacity = rarely() ? below(4096) : file.size();
     kiwami_scene* made = nullptr;
     kiwami_bvh* made_bvh = nullptr;
-    if (input_.below(2) == 0) {
+    if (below(2) == 0) {
       check(kiwami_scene_save(scene(), rarely() ? nullptr : &save, &load.size));
       spoil(load, file);
       check(kiwami_scene_load(device(), &load, &made));
@@ -420,11 +326,11 @@ class Session {
 
   void spoil(kiwami_load_desc& load, std::vector<unsigned char>& file) {
     if (load.size > file.size()) load.size = file.size();
-    if (rarely()) file[input_.take<uint32_t>() % file.size()] ^= 4;
+    if (rarely()) file[arguments_.bits() % file.size()] ^= 4;
     if (rarely()) load.flags = whole();
     // What is changed must not be trusted.
     load.flags &= ~uint32_t{KIWAMI_LOAD_TRUSTED | KIWAMI_LOAD_MAP};
-    if (rarely()) load.bvh_width = input_.below(20);
+    if (rarely()) load.bvh_width = below(20);
     if (rarely()) load.data = nullptr;
     if (rarely()) load.path = "/nowhere/at/all";
   }
@@ -436,7 +342,7 @@ class Session {
 
   /// In any order: what others still need stays.
   void release() {
-    switch (input_.below(4)) {
+    switch (below(4)) {
       case 0:
         geometries_[slot()].reset();
         break;
@@ -464,7 +370,7 @@ class Session {
     return Device(made);
   }
 
-  Input& input_;
+  Arguments arguments_;
   bool validates_ = false;
   Device device_, other_device_;
   std::array<Geometry, kSlots> geometries_;

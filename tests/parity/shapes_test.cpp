@@ -177,14 +177,18 @@ TEST_P(ShapeParity, AgreesWithThePlainLoops) {
     const MixedScene scene = mixed_scene(i);
     const Expected expected = expected_of(scene, i, rays);
     for (const auto& of_ray : expected.hits) hits += of_ray.size();
+    // Blocks of shapes, or the buffers.
+    const double layout = i % 3 == 2 ? KIWAMI_LAYOUT_COMPACT : KIWAMI_LAYOUT_FAST;
+    const std::vector<std::pair<uint32_t, double>> parameters = {{KIWAMI_PARAMETER_LAYOUT, layout}};
     for (const uint32_t width : {4u, 8u, 16u}) {
-      const SceneHandle committed =
-          make_mixed(i % 2 == 0 ? one.get() : two.get(), scene, {width, i % 4 < 2, 0, true});
+      const SceneHandle committed = make_mixed(i % 2 == 0 ? one.get() : two.get(), scene,
+                                               {width, i % 4 < 2, 0, true, parameters});
       ASSERT_EQ(difference(committed.get(), expected), "") << "scene " << i << ", width " << width;
     }
     for (const NamedKernels& named : all_kernels()) {
       if (named.isa != GetParam()) continue;
-      const SceneHandle committed = make_mixed(one.get(), scene, {named.width});
+      const SceneHandle committed =
+          make_mixed(one.get(), scene, {named.width, true, 0, false, parameters});
       ASSERT_EQ(difference_counted(named, view_of(committed.get()), expected), "")
           << named.name << ", scene " << i << ", KIWAMI_SEED=" << seed();
     }
