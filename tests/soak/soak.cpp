@@ -76,7 +76,7 @@ class SavedFile {
  public:
   /// Calls save(desc, size) for the size, and again for the contents.
   template <typename Save>
-  explicit SavedFile(Save&& save) {
+  explicit SavedFile(const Save& save) {
     kiwami_save_desc desc;
     check(kiwami_save_desc_init(&desc, sizeof desc));
     check(save(&desc, &size_));
