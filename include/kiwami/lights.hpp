@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "geometries.hpp"
@@ -97,6 +98,22 @@ class LightTree : public detail::Handle<kiwami_light_tree, kiwami_light_tree_ret
   /// As commit(), but keeps the shape of the tree.
   void refit() { check(kiwami_light_tree_refit(get())); }
 
+  /// Saves the committed set; a file of that name stays whole until all is written.
+  void save(const std::string& path) const {
+    auto desc = detail::defaults(kiwami_save_desc_init);
+    desc.path = path.c_str();
+    check(kiwami_light_tree_save(get(), &desc, nullptr));
+  }
+  /// Loads a set that save() wrote. flags are KIWAMI_LOAD_*.
+  static LightTree load(const Device& device, const std::string& path, std::uint32_t flags = 0) {
+    auto desc = detail::defaults(kiwami_load_desc_init);
+    desc.path = path.c_str();
+    desc.flags = flags;
+    kiwami_light_tree* tree = nullptr;
+    detail::check(kiwami_light_tree_load(device.get(), &desc, &tree), device.get());
+    return LightTree(tree, device);
+  }
+
   LightTreeInfo info() const {
     LightTreeInfo info{};
     info.struct_size = sizeof(info);
@@ -124,6 +141,8 @@ class LightTree : public detail::Handle<kiwami_light_tree, kiwami_light_tree_ret
   }
 
  private:
+  LightTree(kiwami_light_tree* tree, const Device& device) : Handle(tree), device_(device) {}
+
   static kiwami_light_tree* create(const Device& device, const LightTreeOptions& options) {
     auto desc = detail::defaults(kiwami_light_tree_desc_init);
     desc.width = options.width;

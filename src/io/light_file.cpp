@@ -127,7 +127,7 @@ class LightLoader {
     desc.builder = record.builder;
     desc.flags = record.flags;
     desc.distant_probability = record.distant_probability;
-    const auto tree = Reference<LightTree>::adopt(LightTree::create(device_, desc));
+    auto tree = Reference<LightTree>::adopt(LightTree::create(device_, desc));
     take_lights(0, *tree);
     blame_file([&] {
       for (const SavedLightInstance& saved : instances_of(0)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Load: threads that build, change, trace, save, load and release scenes at random, on devices that
-// they share. All answers are compared with those of the scalar kernels, and between the rounds,
+// Load: threads that build, change, trace, save, load and release scenes and sets of lights at
+// random, of all kinds, on devices that they share. All answers are compared with those of the scalar kernels, and between the rounds,
 // when everything is released, the devices must hold what they held in the beginning.
 //
 //   kiwami_soak [SECONDS [THREADS]]      KIWAMI_SEED as for other tests
@@ -18,13 +18,24 @@
 #include "support/environment.h"
 #include "support/library.h"
 #include "support/random.h"
+#include "support/rich_lights.h"
+#include "support/rich_scene.h"
 
 namespace kiwami_tests {
 namespace {
 
 constexpr uint32_t kMeshes = 6;
 constexpr uint32_t kRays = 400;
+constexpr uint32_t kReceivers = 100;
 constexpr uint32_t kSharedScenes = 3;
+/// Of support/rich_scene.h.
+constexpr uint32_t kKinds[] = {kRichInstances,
+                               kRichShapes,
+                               kRichMotion | kRichMicromaps,
+                               kRichTwoLevel | kRichMotion,
+                               kRichMovingInstances,
+                               kRichInstances | kRichMovingInstances | kRichRebraided,
+                               kRichAll & ~kRichDisabled};
 constexpr double kRoundSeconds = 2.0;
 /// What the process may gain after the first rounds: allocators keep and divide what was freed.
 constexpr double kAllowedGrowth = 1.25;
@@ -55,6 +66,44 @@ struct MeshData {
   }
 };
 
+struct LightRelease {
+  void operator()(kiwami_light_tree* lights) const { kiwami_light_tree_release(lights); }
+};
+using LightHandle = std::unique_ptr<kiwami_light_tree, LightRelease>;
+
+/// A file in memory, at a multiple of 64.
+class SavedFile {
+ public:
+  /// Calls save(desc, size) for the size, and again for the contents.
+  template <typename Save>
+  explicit SavedFile(const Save& save) {
+    kiwami_save_desc desc;
+    check(kiwami_save_desc_init(&desc, sizeof desc));
+    check(save(&desc, &size_));
+    data_.reset(std::aligned_alloc(64, (static_cast<size_t>(size_) + 63) / 64 * 64));
+    desc.data = data_.get();
+    desc.capacity = size_;
+    check(save(&desc, nullptr));
+  }
+
+  kiwami_load_desc load_desc(uint32_t flags) const {
+    kiwami_load_desc desc;
+    check(kiwami_load_desc_init(&desc, sizeof desc));
+    desc.data = data_.get();
+    desc.size = size_;
+    desc.flags = flags;
+    return desc;
+  }
+
+ private:
+  struct Free {
+    void operator()(void* data) const { std::free(data); }
+  };
+
+  std::unique_ptr<void, Free> data_;
+  uint64_t size_ = 0;
+};
+
 uint64_t resident_bytes() {
   std::ifstream file("/proc/self/statm");
   uint64_t pages = 0, resident = 0;
@@ -81,12 +130,24 @@ class Soak {
              ~0u,
              0u,
              0u};
+      ray.time = random.unit();
+    }
+    receivers_.resize(kReceivers);
+    for (kiwami_light_receiver& receiver : receivers_) {
+      receiver = {};
+      for (float& coordinate : receiver.position) coordinate = 2 * random.symmetric();
+      receiver.random = static_cast<double>(random.unit());
+      receiver.link_mask = ~uint64_t{0};
     }
     for (const uint32_t isa : available_isas()) devices_.push_back(make_device(isa, 2));
     // Of each set of meshes the answers that all must give.
     for (uint32_t set = 1; set < 1u << kMeshes; ++set) {
       expected_.push_back(answers_of(make(devices_[0].get(), set, {}).get()));
     }
+    for (const uint32_t parts : kKinds) {
+      expected_of_kinds_.push_back(answers_of(make_rich(devices_[0].get(), parts, 4).get()));
+    }
+    expected_choices_ = choices_of(make_lights(devices_[0].get()).get());
     for (const DeviceHandle& device : devices_) {
       held_.push_back(info_of(device.get()).memory_bytes);
     }
@@ -116,6 +177,7 @@ class Soak {
 
  private:
   using Answers = std::vector<kiwami_hit>;
+  using Choices = std::vector<kiwami_light_choice>;
 
   static unsigned long long number(const std::atomic<uint64_t>& count) { return count.load(); }
 
@@ -177,12 +239,42 @@ class Soak {
     return closest_hits(scene, rays_);
   }
 
-  void compare(const kiwami_scene* scene, uint32_t set, const char* when) {
+  void compare(const kiwami_scene* scene, const Answers& expected, const std::string& when) {
     const Answers answers = answers_of(scene);
-    const Answers& expected = expected_[set - 1];
     if (std::memcmp(answers.data(), expected.data(), answers.size() * sizeof answers[0]) == 0)
       return;
-    fail(std::string("answers differ ") + when + ", meshes " + std::to_string(set));
+    fail("answers differ " + when);
+  }
+  void compare(const kiwami_scene* scene, uint32_t set, const char* when) {
+    compare(scene, expected_[set - 1], std::string(when) + ", meshes " + std::to_string(set));
+  }
+
+  SceneHandle make_rich(kiwami_device* device, uint32_t parts, uint32_t width) {
+    kiwami_scene* made = nullptr;
+    check(make_rich_scene(device, {parts, width, 20}, &made));
+    ++counts_.commits;
+    return SceneHandle(made);
+  }
+
+  LightHandle make_lights(kiwami_device* device) {
+    kiwami_light_tree* made = nullptr;
+    check(make_rich_lights(device, {4, 10, true}, &made));
+    return LightHandle(made);
+  }
+
+  Choices choices_of(const kiwami_light_tree* lights) const {
+    Choices choices(receivers_.size());
+    check(kiwami_light_sample(lights, receivers_.data(), 0, choices.data(), 0, choices.size(),
+                              nullptr));
+    return choices;
+  }
+
+  void compare(const kiwami_light_tree* lights, const char* when) {
+    const Choices choices = choices_of(lights);
+    const size_t bytes = choices.size() * sizeof choices[0];
+    if (std::memcmp(choices.data(), expected_choices_.data(), bytes) != 0) {
+      fail(std::string("choices of lights differ ") + when);
+    }
   }
 
   static uint32_t random_set(Random& random) { return 1 + random.below((1u << kMeshes) - 1); }
@@ -197,27 +289,46 @@ class Soak {
   }
 
   /// Through memory, by copy or in place.
-  void save_and_load(kiwami_device* device, kiwami_scene* scene, uint32_t set, Random& random) {
-    kiwami_save_desc save;
-    kiwami_load_desc load;
-    check(kiwami_save_desc_init(&save, sizeof save));
-    check(kiwami_load_desc_init(&load, sizeof load));
-    check(kiwami_scene_save(scene, &save, &load.size));
-    const std::unique_ptr<void, decltype(&std::free)> file(
-        std::aligned_alloc(64, (static_cast<size_t>(load.size) + 63) / 64 * 64), &std::free);
-    load.data = save.data = file.get();
-    save.capacity = load.size;
-    check(kiwami_scene_save(scene, &save, nullptr));
+  void save_and_load(kiwami_device* device, kiwami_scene* scene, const Answers& expected,
+                     const std::string& what, Random& random) {
+    const SavedFile file([&](const kiwami_save_desc* desc, uint64_t* size) {
+      return kiwami_scene_save(scene, desc, size);
+    });
     ++counts_.saves;
-    load.flags = random.below(4);  // all of KIWAMI_LOAD_*
+    const kiwami_load_desc load = file.load_desc(random.below(4));  // all of KIWAMI_LOAD_*
     kiwami_scene* loaded = nullptr;
     check(kiwami_scene_load(device, &load, &loaded));
     const SceneHandle owner(loaded);
     ++counts_.loads;
-    compare(loaded, set, "after loading");
+    compare(loaded, expected, "after loading, " + what);
     if (!random.one_in(4)) return;
     commit(loaded);
-    compare(loaded, set, "after loading and committing");
+    compare(loaded, expected, "after loading and committing, " + what);
+  }
+
+  void step_of_kinds(kiwami_device* device, Random& random) {
+    constexpr uint32_t kWidths[] = {0, 4, 8, 16};
+    const uint32_t kind = random.below(static_cast<uint32_t>(std::size(kKinds)));
+    const Answers& expected = expected_of_kinds_[kind];
+    const std::string what = "kind " + std::to_string(kKinds[kind]);
+    const SceneHandle scene = make_rich(device, kKinds[kind], kWidths[random.below(4)]);
+    compare(scene.get(), expected, "after a build, " + what);
+    save_and_load(device, scene.get(), expected, what, random);
+  }
+
+  void step_of_lights(kiwami_device* device, Random& random) {
+    const LightHandle lights = make_lights(device);
+    compare(lights.get(), "after a commit");
+    const SavedFile file([&](const kiwami_save_desc* desc, uint64_t* size) {
+      return kiwami_light_tree_save(lights.get(), desc, size);
+    });
+    ++counts_.saves;
+    const kiwami_load_desc load = file.load_desc(random.below(4));
+    kiwami_light_tree* loaded = nullptr;
+    check(kiwami_light_tree_load(device, &load, &loaded));
+    const LightHandle owner(loaded);
+    ++counts_.loads;
+    compare(loaded, "after loading");
   }
 
   void look(const kiwami_scene* scene) {
@@ -233,6 +344,8 @@ class Soak {
             const std::vector<uint32_t>& shared_sets) {
     kiwami_device* const device =
         devices_[random.below(static_cast<uint32_t>(devices_.size()))].get();
+    if (random.one_in(4)) return step_of_kinds(device, random);
+    if (random.one_in(8)) return step_of_lights(device, random);
     uint32_t set = random_set(random);
     const SceneHandle scene = make(device, set, random_parameters(random));
     compare(scene.get(), set, "after a build");
@@ -245,7 +358,10 @@ class Soak {
       set = next;
       compare(scene.get(), set, "after a change");
     }
-    if (random.one_in(2)) save_and_load(device, scene.get(), set, random);
+    if (random.one_in(2)) {
+      save_and_load(device, scene.get(), expected_[set - 1], "meshes " + std::to_string(set),
+                    random);
+    }
     if (random.one_in(4)) look(scene.get());
     if (random.one_in(4)) check(kiwami_scene_validate(scene.get()));
     const uint32_t other = random.below(kSharedScenes);
@@ -301,7 +417,9 @@ class Soak {
   std::vector<MeshData> meshes_;
   std::vector<kiwami_ray> rays_;
   std::vector<DeviceHandle> devices_;
-  std::vector<Answers> expected_;
+  std::vector<Answers> expected_, expected_of_kinds_;
+  std::vector<kiwami_light_receiver> receivers_;
+  Choices expected_choices_;
   std::vector<uint64_t> held_;
   Counts counts_;
 };

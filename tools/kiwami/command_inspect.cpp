@@ -98,7 +98,14 @@ void print_tree(const InspectedTree& tree) {
 
 Inspection inspect(const InspectOptions& options, const std::vector<BuildOptions>& builds) {
   const Device device = options.trace.make_device();
-  const SceneFile file = load_known_scene(options.scene);
+  const SceneFile file = load_known_scene(options.scene, false, OtherGeometries::kLeftOut);
+  if (file.triangle_count() == 0) {
+    throw SceneError("'" + options.scene + "' holds no triangles at rest, whose tree is shown");
+  }
+  if (file.left_out_count != 0) {
+    std::printf("note    %s geometries that are shapes or move are left out\n",
+                grouped(file.left_out_count).c_str());
+  }
   Inspection inspection;
   inspection.scene = std::filesystem::path(options.scene).filename().string();
   std::vector<kiwami_ray> rays;

@@ -89,8 +89,8 @@ void check_options(const RenderOptions& options) {
 void print_build(const SceneFile& file, const Device& device, const kiwami_scene_info& info) {
   const std::string instances =
       file.instances.empty() ? "" : ", " + grouped(file.instances.size()) + " instances";
-  std::printf("scene   %s triangles in %s meshes%s\n", grouped(file.triangle_count()).c_str(),
-              grouped(file.meshes.size()).c_str(), instances.c_str());
+  std::printf("scene   %s triangles in %s meshes%s%s\n", grouped(file.triangle_count()).c_str(),
+              grouped(file.meshes.size()).c_str(), instances.c_str(), left_out_text(file).c_str());
   if (info.skipped_count > 0) {
     std::printf("note    %s triangles are skipped: a vertex is NaN, infinite or beyond 2^60\n",
                 grouped(info.skipped_count).c_str());
@@ -104,13 +104,14 @@ void print_build(const SceneFile& file, const Device& device, const kiwami_scene
               info.node_fill * 100.0, info.leaf_fill * 100.0);
 }
 
-/// With the trees of the file, if it is one that was saved with them, they name what is hit as it is
-/// named in the loaded file, and that stays as it is.
+/// With the trees of the file, if it is one that was saved with them and stays as it is. Lights ask
+/// for more: that hits are named as in the loaded file.
 std::unique_ptr<BuiltScene> make_scene(const RenderOptions& options, const Device& device,
                                        const SceneFile& loaded, const SceneFile& file) {
   const bool is_changed = !options.motion.empty() || options.leaf_mask_level != 0;
-  if (is_saved_scene(options.scene) && loaded.instances_are_outermost && !is_changed) {
-    return std::make_unique<BuiltScene>(device, options.scene, KIWAMI_LOAD_MAP, loaded.instances);
+  const bool has_names = options.lights.empty() || loaded.has_saved_numbers;
+  if (is_saved_scene(options.scene) && has_names && !is_changed) {
+    return std::make_unique<BuiltScene>(device, options.scene, KIWAMI_LOAD_MAP, &loaded);
   }
   BuildOptions build = options.pipeline.build_options(options.trace.bvh_width);
   build.leaf_mask_level = options.leaf_mask_level;
@@ -135,7 +136,10 @@ void run_render(const RenderOptions& options) {
   check_options(options);
   const Size size = parse_size("--size", options.size);
   const Device device = options.trace.make_device();
-  const SceneFile loaded = load_scene(options.scene);
+  const bool needs_triangles =
+      !options.lights.empty() || !options.motion.empty() || options.leaf_mask_level != 0;
+  const SceneFile loaded = load_scene(
+      options.scene, needs_triangles ? OtherGeometries::kRefused : OtherGeometries::kLeftOut);
   SceneFile file = options.instanced ? loaded : flatten(loaded);
   if (!options.motion.empty()) set_in_motion(file, options.motion);
   const std::unique_ptr<BuiltScene> built = make_scene(options, device, loaded, file);
@@ -152,7 +156,7 @@ void run_render(const RenderOptions& options) {
   settings.occlusion_radius = 0.1f * box.diagonal();
   settings.up = view.up;
   settings.threads = device.info().thread_count;
-  if (!options.motion.empty()) {
+  if (!options.motion.empty() || loaded.left_out_count != 0) {
     std::tie(settings.shutter_open, settings.shutter_close) = parse_shutter(options.shutter);
   }
   Tracing tracing(scene);
@@ -225,7 +229,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
   add_motion_option(*command, options->motion);
   command
       ->add_option("--shutter", options->shutter,
-                   "With --motion: when the shutter opens and closes, from 0 to 1")
+                   "Where something moves: when the shutter opens and closes, from 0 to 1")
       ->capture_default_str();
   add_view_options(*command, options->view);
   add_trace_options(*command, options->trace);

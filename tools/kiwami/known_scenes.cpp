@@ -38,8 +38,9 @@ std::vector<std::string> read_list(const std::filesystem::path& path) {
 
 }  // namespace
 
-SceneFile load_known_scene(const std::filesystem::path& path, bool keep_instances) {
-  SceneFile file = load_scene(path);
+SceneFile load_known_scene(const std::filesystem::path& path, bool keep_instances,
+                           OtherGeometries others) {
+  SceneFile file = load_scene(path, others);
   if (!keep_instances) file = flatten(file);
   const nlohmann::ordered_json& cameras = known_scenes().at("cameras");
   const auto camera = cameras.find(path.filename().string());

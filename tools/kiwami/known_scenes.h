@@ -11,7 +11,8 @@ namespace kiwami::tools {
 
 /// load_scene, flattened unless its instances are kept; a public scene that is known by its file
 /// name gets a camera that shows it well (benchmarks/scenes.json).
-SceneFile load_known_scene(const std::filesystem::path& path, bool keep_instances = false);
+SceneFile load_known_scene(const std::filesystem::path& path, bool keep_instances = false,
+                           OtherGeometries others = OtherGeometries::kRefused);
 
 /// The names of the lists of benchmark scenes: automatic choices are tuned on "tuning" alone, and
 /// figures are reported for "judging" alone.

@@ -250,6 +250,11 @@ std::string grouped(uint64_t number) {
   return text;
 }
 
+std::string left_out_text(const SceneFile& file) {
+  if (file.left_out_count == 0) return "";
+  return ", " + grouped(file.left_out_count) + " geometries that are shapes or move";
+}
+
 std::string format(const char* pattern, ...) {
   va_list arguments;
   va_start(arguments, pattern);

@@ -86,6 +86,9 @@ Size parse_size(const std::string& option, const std::string& text);
 /// "1,234,567".
 std::string grouped(uint64_t number);
 
+/// ", 3 geometries that are shapes or move", of those that a loaded scene leaves out; "" for none.
+std::string left_out_text(const SceneFile& file);
+
 /// As printf, into a string.
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 

@@ -27,9 +27,18 @@ std::vector<RaySet> make_ray_sets(const SceneFile& scene, const BuiltScene& buil
   sets.push_back(primary_rays(camera_for(scene, box, count)));
   sets.push_back(bounce_rays(built, sets.front().rays, count, seed));
   sets.push_back(random_rays(box, count, seed));
+  // Through vertices, of which there may be none.
+  if (scene.triangle_count() == 0) return sets;
   sets.push_back(axis_rays(scene, box, count, seed));
   sets.push_back(aimed_rays(scene, box, count, seed));
   return sets;
+}
+
+void spread_times(std::vector<RaySet>& sets, uint64_t seed) {
+  Random random(seed, 6);
+  for (RaySet& set : sets) {
+    for (kiwami_ray& ray : set.rays) ray.time = random.uniform();
+  }
 }
 
 void print_number(const char* name, float value) {
@@ -78,14 +87,30 @@ constexpr const char* kReferenceName = "scalar, 4 wide, merged, 1 thread";
 }  // namespace
 
 Verifier::Verifier(const SceneFile& world, const SceneFile& built, const BuildOptions& build,
-                   size_t rays_per_set, uint64_t seed)
+                   const std::string& path, size_t rays_per_set, uint64_t seed)
     : world_(world),
       built_(built),
       build_(build),
+      path_(path),
       device_(KIWAMI_ISA_SCALAR, 1),
-      reference_(device_, built, {4, true}),
-      sets_(make_ray_sets(world, reference_, rays_per_set, seed)),
-      expected_(trace_answers(reference_, sets_)) {}
+      reference_(make(device_, {4, true})),
+      sets_(make_ray_sets(world, reference_, rays_per_set, seed)) {
+  if (!path_.empty()) spread_times(sets_, seed);
+  expected_ = trace_answers(reference_, sets_);
+}
+
+Verifier::Verifier(const SceneFile& world, const SceneFile& built, const BuildOptions& build,
+                   size_t rays_per_set, uint64_t seed)
+    : Verifier(world, built, build, "", rays_per_set, seed) {}
+
+Verifier::Verifier(const SceneFile& world, const SceneFile& file, const std::string& path,
+                   size_t rays_per_set, uint64_t seed)
+    : Verifier(world, file, {}, path, rays_per_set, seed) {}
+
+BuiltScene Verifier::make(const Device& device, const BuildOptions& build) const {
+  if (path_.empty()) return BuiltScene(device, built_, build);
+  return BuiltScene(device, path_, KIWAMI_LOAD_MAP, &built_, build.bvh_width);
+}
 
 bool Verifier::run() {
   for (const RaySet& set : sets_) {
@@ -102,6 +127,7 @@ bool Verifier::run() {
   for (const uint32_t isa : available_isas()) {
     for (const uint32_t width : {4u, 8u, 16u}) {
       for (const bool merge : {true, false}) {
+        if (!merge && !path_.empty()) continue;
         for (const uint32_t threads : {1u, 2u}) {
           if (!run_contender({isa, width, merge, threads})) return false;
         }
@@ -116,10 +142,13 @@ bool Verifier::run_contender(const Contender& contender) {
   BuildOptions build = build_;
   build.bvh_width = contender.bvh_width;
   build.merge_leaves = contender.merge_leaves;
-  const BuiltScene scene(device, built_, build);
+  const BuiltScene scene = make(device, build);
   const bool native = (device.info().native_widths & (1u << contender.bvh_width)) != 0;
   std::printf("%-8s %6u %9s %8s %10u %12.1f  ", kiwami_isa_name(contender.isa), contender.bvh_width,
-              native ? "native" : "scalar", contender.merge_leaves ? "yes" : "no",
+              native ? "native" : "scalar",
+              !path_.empty()           ? "as saved"
+              : contender.merge_leaves ? "yes"
+                                       : "no",
               contender.threads, scene.info().build_seconds * 1e3);
   std::fflush(stdout);
   if (!compare(trace_answers(scene, sets_), name_of(contender))) return false;
@@ -139,6 +168,10 @@ bool Verifier::compare(const Answers& answers, const std::string& name) const {
 }
 
 bool Verifier::compare_with_embree() const {
+  if (!path_.empty()) {
+    std::printf("\nnot compared with Embree: the scene holds more than triangles at rest\n");
+    return true;
+  }
   const std::unique_ptr<EmbreeTracer> embree = EmbreeTracer::create(world_, true);
   if (!embree) {
     std::printf("\nnot compared with Embree: these tools were built without it\n");

@@ -29,11 +29,19 @@ class Verifier {
   /// by the defaults.
   Verifier(const SceneFile& world, const SceneFile& built, const BuildOptions& build,
            size_t rays_per_set, uint64_t seed);
+  /// The same of a scene that was saved, with all that it holds, which is loaded again and again:
+  /// as it was saved, and built anew for other widths. The file is what the path holds. Rays are of
+  /// all times, and Embree is not asked.
+  Verifier(const SceneFile& world, const SceneFile& file, const std::string& path,
+           size_t rays_per_set, uint64_t seed);
 
   /// Prints a table and returns true; or prints the first difference and returns false.
   bool run();
 
  private:
+  Verifier(const SceneFile& world, const SceneFile& built, const BuildOptions& build,
+           const std::string& path, size_t rays_per_set, uint64_t seed);
+  BuiltScene make(const Device& device, const BuildOptions& build) const;
   bool run_contender(const Contender& contender);
   bool compare(const Answers& answers, const std::string& name) const;
   bool compare_with_embree() const;
@@ -41,6 +49,7 @@ class Verifier {
   const SceneFile& world_;
   const SceneFile& built_;
   BuildOptions build_;
+  std::string path_;  ///< empty: scenes are built
   Device device_;
   BuiltScene reference_;
   std::vector<RaySet> sets_;

@@ -158,15 +158,16 @@ BuiltScene::BuiltScene(const Device& device, const SceneFile& file, const BuildO
 }
 
 BuiltScene::BuiltScene(const Device& device, const std::string& path, uint32_t load_flags,
-                       const std::vector<Instance>& instances)
-    : loaded_instances_(instances) {
+                       const SceneFile* file, uint32_t bvh_width) {
   kiwami_load_desc desc;
   throw_on_error(kiwami_load_desc_init(&desc, sizeof desc), device.get());
   desc.path = path.c_str();
   desc.flags = load_flags;
+  desc.bvh_width = bvh_width;
   throw_on_error(kiwami_scene_load(device.get(), &desc, &scene_), device.get());
   try {
     info_ = info_of(scene_);
+    if (file) paths_ = std::make_unique<InstancePaths>(device.get(), *file);
   } catch (...) {
     kiwami_scene_release(scene_);
     throw;
@@ -272,12 +273,8 @@ void BuiltScene::own_closest_hits(std::span<const kiwami_ray> rays,
 }
 
 void BuiltScene::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const {
+  if (paths_ && !paths_->empty()) return loaded_closest_hits(rays, hits);
   own_closest_hits(rays, hits);
-  for (kiwami_hit& hit : hits) {
-    if (loaded_instances_.empty()) break;
-    if (hit.instance_id == KIWAMI_INVALID_ID) continue;
-    move_to_world(loaded_instances_[hit.instance_id].transform, hit);
-  }
   if (!has_instances_) return;
   for (size_t i = 0; i < hits.size(); ++i) {
     if (hits[i].instance_id == KIWAMI_INVALID_ID) continue;
@@ -286,6 +283,19 @@ void BuiltScene::closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami
                                               matrix.data()),
                    nullptr);
     move_to_world(matrix, hits[i]);
+  }
+}
+
+void BuiltScene::loaded_closest_hits(std::span<const kiwami_ray> rays,
+                                     std::span<kiwami_hit> hits) const {
+  kiwami_query query;
+  throw_on_error(kiwami_query_init(&query, sizeof query), nullptr);
+  std::vector<uint32_t> paths(rays.size() * KIWAMI_MAX_INSTANCE_DEPTH);
+  query.instance_paths = paths.data();
+  throw_on_error(kiwami_closest_hit(scene_, rays.data(), 0, hits.data(), 0, rays.size(), &query),
+                 nullptr);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    paths_->move_to_world(&paths[i * KIWAMI_MAX_INSTANCE_DEPTH], rays[i].time, hits[i]);
   }
 }
 

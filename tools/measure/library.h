@@ -3,11 +3,13 @@
 
 #include <kiwami/kiwami.h>
 
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "measure/instance_paths.h"
 #include "measure/tracer.h"
 #include "scene/scene_file.h"
 
@@ -97,10 +99,11 @@ struct MeasuredTree {
 class BuiltScene : public Tracer {
  public:
   BuiltScene(const Device& device, const SceneFile& file, const BuildOptions& options = {});
-  /// A scene that was saved, with its tree; `load_flags` are KIWAMI_LOAD_*. It needs no other file.
-  /// The instances are those of the file, where it has any and they are outermost.
+  /// A scene that was saved, with its trees; `load_flags` are KIWAMI_LOAD_*. Width 0: as it was
+  /// saved. What the file holds serves to carry hits out of instances, and must outlive the scene;
+  /// without it, they stay there.
   BuiltScene(const Device& device, const std::string& path, uint32_t load_flags,
-             const std::vector<Instance>& instances = {});
+             const SceneFile* file = nullptr, uint32_t bvh_width = 0);
   ~BuiltScene() override { release(); }
   BuiltScene(const BuiltScene&) = delete;
   BuiltScene& operator=(const BuiltScene&) = delete;
@@ -144,6 +147,7 @@ class BuiltScene : public Tracer {
   void build_instances(kiwami_device* device, const SceneFile& file, const BuildOptions& options);
   void attach(kiwami_device* device, kiwami_scene* scene, const Mesh& mesh,
               uint32_t leaf_mask_level);
+  void loaded_closest_hits(std::span<const kiwami_ray> rays, std::span<kiwami_hit> hits) const;
   void release();
   kiwami_bvh_measures measure(const kiwami_bvh* bvh, uint32_t flags,
                               kiwami_bvh_node_measures* nodes) const;
@@ -151,8 +155,8 @@ class BuiltScene : public Tracer {
   std::vector<kiwami_scene*> shown_;  ///< the scenes of instances
   kiwami_scene* scene_ = nullptr;
   std::vector<kiwami_geometry*> geometries_;
-  bool has_instances_ = false;              ///< which are the last geometry
-  std::vector<Instance> loaded_instances_;  ///< of a scene that was saved
+  bool has_instances_ = false;            ///< which are the last geometry
+  std::unique_ptr<InstancePaths> paths_;  ///< of a scene that was saved
   kiwami_scene_info info_{};
   double node_cost_ = 1.0;
   double leaf_cost_ = 1.0;

@@ -14,9 +14,12 @@ constexpr uint64_t kHeaderBytes = 64, kEntryBytes = 48, kAlignment = 64;
 constexpr uint64_t kVersionAt = 12, kKindAt = 20, kSectionCountAt = 24;
 constexpr uint32_t kFormatVersion = 2, kSceneKind = 1;
 constexpr uint32_t kGeometries = 3, kBuffers = 4, kShownScenes = 12;
-constexpr uint32_t kNoGeometry = 0, kTriangleMesh = 1, kInstances = 2;
+constexpr uint32_t kTriangleMesh = 1, kInstances = 2, kDiscs = 4, kCurves = 5, kMovingMesh = 6,
+                   kMovingInstances = 7;
 constexpr uint32_t kCommitted = 1, kHasIndices = 4, kHasMasks = 8, kHasOpacity = 16,
-                   kHasOpacityIndices = 32;
+                   kHasOpacityIndices = 32, kHasQuaternions = 64;
+/// The time steps that one geometry has at most.
+constexpr uint32_t kMostSteps = 129;
 constexpr size_t kMaxDepth = 8;
 /// More are not shown to be of use, and nested arrays of few bytes stand for any number.
 constexpr size_t kMaxInstances = size_t{1} << 26;
@@ -55,17 +58,15 @@ struct Extent {
   uint64_t bytes = 0;
 };
 
-/// An array of instances: the scenes that it shows, by instance.
-struct Group {
-  std::vector<uint32_t> shown;
-  std::vector<Transform> transforms;
-};
+/// The meshes of one scene: numbers among those of the file; none without triangles.
+using MeshNumbers = std::vector<uint32_t>;
 
-/// What is read of one scene.
-struct Content {
-  std::vector<uint32_t> meshes;  ///< numbers among those of the file; none without triangles
-  std::vector<Group> groups;
-};
+Transform transform_of(const SavedInstances& group, size_t instance) {
+  Transform transform;
+  std::copy_n(group.transforms.begin() + static_cast<std::ptrdiff_t>(12 * instance), 12,
+              transform.begin());
+  return transform;
+}
 
 /// The file as words.
 class SavedScene {
@@ -83,8 +84,12 @@ class SavedScene {
 
   SceneFile read_scene() {
     for (uint32_t number = 0; has_scene(number); ++number) read_content(number);
-    if (contents_.empty()) reader_.fail("it has no scene");
-    if (!contents_[0].groups.empty()) place(0, kIdentity, 0, 0);
+    if (meshes_.empty()) reader_.fail("it has no scene");
+    if (meshes_.size() > 1) {
+      place(0, kIdentity, 0, 0);
+      // Without instances all meshes would stand in the world.
+      if (file_.instances.empty()) file_.meshes.clear();
+    }
     return std::move(file_);
   }
 
@@ -126,44 +131,51 @@ class SavedScene {
   }
 
   void read_content(uint32_t number) {
-    const Extent records = section(kGeometries), shown = section(kShownScenes);
-    Extent buffers = section(kBuffers);
+    const Extent records = section(kGeometries);
+    Extent shown = section(kShownScenes), buffers = section(kBuffers);
     const uint64_t first = buffers.offset;
-    Content content;
-    uint64_t next_shown = 0;
+    MeshNumbers meshes;
+    std::vector<SavedInstances> groups;
     for (uint64_t id = 0; id < records.bytes / sizeof(GeometryRecord); ++id) {
       const auto record = read<GeometryRecord>(records.offset + id * sizeof(GeometryRecord));
       const std::string name = "geometry " + std::to_string(id);
       const bool is_committed = (record.flags & kCommitted) != 0;
-      if (record.kind == kInstances) {
-        Group group = read_group(record, name, first, buffers);
-        if (record.scene_count > shown.bytes / 4 - next_shown) {
-          reader_.fail(name + " shows more scenes than there are");
-        }
-        for (uint32_t& index : group.shown) {
-          if (index >= record.scene_count) reader_.fail(name + " has an index of no scene");
-          index = read<uint32_t>(shown.offset + 4 * (next_shown + index));
-          if (index <= number) reader_.fail(name + " shows a scene that shows it");
-        }
-        next_shown += record.scene_count;
-        if (is_committed) content.groups.push_back(std::move(group));
+      if (record.kind == kInstances || record.kind == kMovingInstances) {
+        SavedInstances group = read_group(record, name, first, buffers);
+        name_scenes(record, name, number, shown, group);
+        if (is_committed && group.step_count > 1) ++file_.left_out_count;
+        if (is_committed) groups.push_back(std::move(group));
         continue;
-      }
-      if (record.kind != kTriangleMesh && record.kind != kNoGeometry) {
-        reader_.fail(name + (number == 0 ? "" : " of a scene that it shows") +
-                     " is neither a triangle mesh nor instances, expected nothing else");
       }
       Mesh mesh;
       mesh.name = name;
-      if (record.kind == kTriangleMesh) read_mesh(record, first, buffers, mesh);
+      if (record.kind == kTriangleMesh) {
+        read_mesh(record, first, buffers, mesh);
+      } else if (skip_other(record, name, first, buffers) && is_committed) {
+        ++file_.left_out_count;
+      }
       if (!is_committed) mesh.vertices.clear(), mesh.indices.clear();
       // Where there are no instances, mesh i is geometry i.
-      if (mesh.triangle_count() != 0) {
-        content.meshes.push_back(static_cast<uint32_t>(file_.meshes.size()));
-      }
+      if (mesh.triangle_count() != 0) meshes.push_back(static_cast<uint32_t>(file_.meshes.size()));
       file_.meshes.push_back(std::move(mesh));
     }
-    contents_.push_back(std::move(content));
+    meshes_.push_back(std::move(meshes));
+    file_.saved_instances.push_back(std::move(groups));
+  }
+
+  /// Makes the scenes that an array shows those of the file.
+  void name_scenes(const GeometryRecord& record, const std::string& name, uint32_t number,
+                   Extent& shown, SavedInstances& group) const {
+    if (record.scene_count > shown.bytes / 4) {
+      reader_.fail(name + " shows more scenes than there are");
+    }
+    for (uint32_t& index : group.shown) {
+      if (index >= record.scene_count) reader_.fail(name + " has an index of no scene");
+      index = read<uint32_t>(shown.offset + 4 * uint64_t{index});
+      if (index <= number) reader_.fail(name + " shows a scene that shows it");
+    }
+    shown.offset += 4 * uint64_t{record.scene_count};
+    shown.bytes -= 4 * uint64_t{record.scene_count};
   }
 
   /// Takes count elements of a buffer that begins at the next multiple of 64.
@@ -206,10 +218,20 @@ class SavedScene {
     if (!is_whole) reader_.fail("an index of " + mesh.name + " names no vertex");
   }
 
-  Group read_group(const GeometryRecord& record, const std::string& name, uint64_t first,
-                   Extent& rest) const {
-    Group group;
-    group.transforms = take<Transform>(record.primitive_count, sizeof(Transform), first, rest);
+  static uint32_t step_count_of(const GeometryRecord& record) {
+    const bool is_moving = record.kind == kMovingMesh || record.kind == kMovingInstances;
+    return is_moving ? std::min(record.step_count, kMostSteps) : 1;
+  }
+
+  SavedInstances read_group(const GeometryRecord& record, const std::string& name, uint64_t first,
+                            Extent& rest) const {
+    SavedInstances group;
+    group.step_count = step_count_of(record);
+    group.has_quaternions = (record.flags & kHasQuaternions) != 0;
+    group.time_begin = record.time_begin;
+    group.time_end = record.time_end;
+    group.transforms = take<float>(uint64_t{record.primitive_count} * group.step_count,
+                                   group.has_quaternions ? 64 : 48, first, rest);
     group.shown = (record.flags & kHasIndices) != 0
                       ? take<uint32_t>(record.primitive_count, 4, first, rest)
                       : std::vector<uint32_t>(record.primitive_count, 0);
@@ -218,24 +240,39 @@ class SavedScene {
     return group;
   }
 
+  /// Passes over the buffers of shapes, or of a mesh that moves; false: there is nothing of that
+  /// number.
+  bool skip_other(const GeometryRecord& record, const std::string& name, uint64_t first,
+                  Extent& rest) const {
+    if (record.kind == 0) return false;
+    if (record.kind > kMovingMesh) reader_.fail(name + " is of a kind that is not known");
+    const bool is_mesh = record.kind == kMovingMesh;
+    take<float>(record.point_count * step_count_of(record), is_mesh ? 12 : 16, first, rest);
+    if (record.kind == kDiscs) take<float>(record.primitive_count, 12, first, rest);
+    if ((record.kind == kCurves || is_mesh) && (record.flags & kHasIndices) != 0) {
+      take<uint32_t>(record.primitive_count, is_mesh ? 12 : 4, first, rest);
+    }
+    return true;
+  }
+
   /// Puts all meshes of a scene into the world; outermost is the number of the instance that leads
   /// there from the first scene.
   void place(uint32_t number, const Transform& to_world, size_t depth, size_t outermost) {
-    if (number >= contents_.size()) reader_.fail("it shows a scene that is not there");
+    if (number >= meshes_.size()) reader_.fail("it shows a scene that is not there");
     if (depth > kMaxDepth) reader_.fail("its instances are nested too deeply");
-    const Content& content = contents_[number];
-    for (const uint32_t mesh : content.meshes) {
-      if (depth == 0 || outermost != file_.instances.size()) {
-        file_.instances_are_outermost = false;
-      }
+    const std::vector<SavedInstances>& groups = file_.saved_instances[number];
+    for (const uint32_t mesh : meshes_[number]) {
+      if (depth == 0 || outermost != file_.instances.size()) file_.has_saved_numbers = false;
       if (file_.instances.size() == kMaxInstances) reader_.fail("it has too many instances");
       file_.instances.push_back({mesh, to_world});
     }
-    if (depth > 0 && content.meshes.size() != 1) file_.instances_are_outermost = false;
-    if (depth > 0 && !content.groups.empty()) file_.instances_are_outermost = false;
-    for (const Group& group : content.groups) {
+    if (depth > 0 && (meshes_[number].size() != 1 || !groups.empty())) {
+      file_.has_saved_numbers = false;
+    }
+    for (const SavedInstances& group : groups) {
+      if (group.step_count > 1) continue;
       for (size_t i = 0; i < group.shown.size(); ++i) {
-        place(group.shown[i], product(to_world, group.transforms[i]), depth + 1,
+        place(group.shown[i], product(to_world, transform_of(group, i)), depth + 1,
               depth == 0 ? outermost++ : outermost);
       }
     }
@@ -244,7 +281,7 @@ class SavedScene {
   ByteReader reader_;
   std::vector<uint32_t> words_;
   uint64_t next_entry_ = 0;
-  std::vector<Content> contents_;
+  std::vector<MeshNumbers> meshes_;  ///< by scene
   SceneFile file_;
 };
 

@@ -73,7 +73,7 @@ bool SceneFile::is_moving() const {
                      [](const Mesh& mesh) { return !mesh.moved.empty(); });
 }
 
-SceneFile load_scene(const fs::path& path) {
+SceneFile load_scene(const fs::path& path, OtherGeometries others) {
   if (std::optional<SceneFile> scene = make_procedural_scene(path.string())) return *scene;
   check_is_readable_file(path);
   const std::string extension = format_extension(path);
@@ -92,7 +92,14 @@ SceneFile load_scene(const fs::path& path) {
         "' is unknown, expected .obj, .tri or .ins, each also with .gz, .kiwami, or one of " +
         procedural_scene_names());
   }
-  if (scene.triangle_count() == 0) throw SceneError("'" + path.string() + "' holds no triangles");
+  if (scene.left_out_count != 0 && others == OtherGeometries::kRefused) {
+    throw SceneError("'" + path.string() + "' holds " + std::to_string(scene.left_out_count) +
+                     " geometries that are shapes or move, expected triangles at rest, as this "
+                     "command goes by them alone");
+  }
+  if (scene.triangle_count() == 0 && scene.left_out_count == 0) {
+    throw SceneError("'" + path.string() + "' holds no triangles");
+  }
   return scene;
 }
 
@@ -105,6 +112,7 @@ SceneFile flatten(const SceneFile& scene) {
   }
   SceneFile flat;
   flat.view = scene.view;
+  flat.left_out_count = scene.left_out_count;
   flat.meshes.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
     flat.meshes.push_back(transformed(scene.meshes[instance.mesh], instance.transform));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sets of lights against the answers that every binding must give.
 #include <algorithm>
+#include <cstdio>
 
 #include "support.h"
 
@@ -82,6 +83,36 @@ TEST(Lights, AreSeenThroughInstances) {
   EXPECT_EQ(choices[0].user_id, 7u);
   EXPECT_EQ(choices[0].instance_id, 0u);
   EXPECT_EQ(lights.info().instance_count, 1u);
+}
+
+TEST(Lights, FilesGiveTheSameChoices) {
+  const kiwami::Device device;
+  kiwami::LightTree lights(device, {.width = 4});
+  lights.add_mesh(kCorners, std::span(&kTriangle, 1), {.radiance = 3.0f, .user_id = 5});
+  lights.add_mesh(kCorners, std::span(&kTriangle, 1), {.radiance = 1.0f, .user_id = 6});
+  const std::string path = testing::TempDir() + "kiwami_hpp_lights.kiwami";
+  EXPECT_THROW(lights.save(path), kiwami::Error);  // never committed
+  lights.commit();
+  lights.save(path);
+  std::vector<kiwami::LightReceiver> receivers(64);
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    receivers[i].link_mask = ~std::uint64_t{0};
+    receivers[i].random = (static_cast<double>(i) + 0.5) / 64.0;
+  }
+  const std::vector<kiwami::LightChoice> before = lights.sample(receivers);
+  EXPECT_NE(before.front().light_id, before.back().light_id);
+  for (const std::uint32_t flags : {0u, std::uint32_t{KIWAMI_LOAD_MAP | KIWAMI_LOAD_TRUSTED}}) {
+    kiwami::LightTree loaded = kiwami::LightTree::load(device, path, flags);
+    const std::vector<kiwami::LightChoice> after = loaded.sample(receivers);
+    using Bits = std::array<std::uint32_t, sizeof(kiwami::LightChoice) / 4>;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      EXPECT_EQ(std::bit_cast<Bits>(after[i]), std::bit_cast<Bits>(before[i]));
+    }
+    loaded.commit();
+    EXPECT_EQ(loaded.info().light_count, 2u);
+  }
+  std::remove(path.c_str());
+  EXPECT_THROW(kiwami::LightTree::load(device, path), kiwami::Error);
 }
 
 TEST(Lights, BadOnesAreErrors) {
