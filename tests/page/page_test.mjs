@@ -74,12 +74,13 @@ function arcsBelow(nodes, row) {
     (a, b) => isGroup(a) - isGroup(b) || arcCost(nodes, b) - arcCost(nodes, a) || a - b);
 }
 
-/** A point of the first ring's arc number `i`, by default its middle, in pixels of the visible page. */
-async function pointOfArc(page, nodes, focus, i, part = 0.5) {
+/** A point of the first ring's arc number `i`, by default its middle and in the first chart, in pixels of
+ *  the visible page. */
+async function pointOfArc(page, nodes, focus, i, part = 0.5, chart = 0) {
   const arcs = arcsBelow(nodes, focus);
   const start = arcs.slice(0, i).reduce((sum, row) => sum + arcCost(nodes, row), 0);
   const turn = (start + arcCost(nodes, arcs[i]) * part) / arcCost(nodes, focus) * 2 * Math.PI;
-  const box = await page.locator('.chart canvas').first().boundingBox();
+  const box = await page.locator('.chart canvas').nth(chart).boundingBox();
   // The disc in the middle ends at 0.2 of the radius; nine rings at most lie between it and the rim.
   const distance = (Math.min(box.width, box.height) / 2 - 4) * (0.2 + 0.8 / 9 / 2);
   return {x: box.x + box.width / 2 + Math.sin(turn) * distance,
@@ -311,6 +312,33 @@ describe('a page of three pipelines', () => {
     assert.deepEqual(seenDark.complaints, []);
     await dark.close();
   });
+});
+
+test('two trees of builders without a binary tree stand side by side, and each can be looked into', async () => {
+  const {html, data} = inspect('wide', 'terrain:60', '--ray-count', '500', '--pipeline', 'wide_linear+reorder_sato',
+                               '--pipeline', 'trial+parallel_reinsertion');
+  assert.deepEqual(data.pipelines.map(pipeline => pipeline.name.split(',')[0]),
+                   ['wide_linear + reorder_sato', 'trial + parallel_reinsertion']);
+  const {page, seen} = await open(html);
+  const [left, right] = [await page.locator('.chart').nth(0).boundingBox(), await page.locator('.chart').nth(1).boundingBox()];
+  assert.ok(left.x + left.width <= right.x + 1 && Math.abs(left.y - right.y) < 2, 'one is not beside the other');
+  for (const [i, {nodes, name, sah_cost}] of data.pipelines.entries()) {
+    const chart = page.locator('.chart').nth(i);
+    assert.ok((await chart.locator('figcaption').innerText()).startsWith(name), name);
+    const colours = await coloursOf(page, `.chart:nth-child(${i + 1}) canvas`);
+    assert.ok(colours.filter(([, count]) => count > 20).length > 20, `${name}: ${colours.length} colours`);
+    // A click in a chart chooses a node of its own tree.
+    const {x, y} = await pointOfArc(page, nodes, 0, 0, 0.5, i);
+    await page.mouse.click(x, y);
+    await settle(page);
+    const row = arcsBelow(nodes, 0)[0];
+    assert.match(await text(page, 'node-name'), new RegExp(` ${nodes.index[row]}$`));
+    close(await text(page, 'fact-subtree-cost'), nodes.subtree_cost[row]);
+    await page.keyboard.press('Escape');
+    close(await text(page, 'fact-subtree-cost'), sah_cost);
+  }
+  assert.deepEqual(seen.complaints, []);
+  await page.close();
 });
 
 test('each arc is as wide as its cost, also what stands for many nodes', async () => {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "parity/all_pipelines.h"
 #include "parity/committed_tree.h"
 #include "parity/kernel_tables.h"
 #include "support/environment.h"
@@ -20,6 +21,8 @@ namespace {
 
 /// Triangles that the plain oracle tests in the short form, of all its rays together.
 constexpr uint64_t kOracleTests = 10000000;
+/// All pipelines take scenes of so many times fewer triangles.
+constexpr uint64_t kPipelineShare = 10;
 
 struct Answers {
   std::vector<kiwami_hit> hits;
@@ -80,6 +83,25 @@ TEST_P(PublicScenes, GiveTheSameBitsEverywhere) {
         }
       }
     }
+  }
+}
+
+TEST_P(PublicScenes, GiveTheSameBitsByEveryPipeline) {
+  if (scene_.triangle_count() > public_scene_limit() / kPipelineShare) {
+    GTEST_SKIP() << "SKIPPED: " << scene_.triangle_count() << " triangles; the short form takes "
+                 << public_scene_limit() / kPipelineShare;
+  }
+  rays_.resize(std::max<size_t>(1, rays_.size() / 16));
+  std::vector<DeviceHandle> devices;
+  for (const uint32_t isa : available_isas()) devices.push_back(make_device(isa, 1));
+  const std::vector<Pipeline> pipelines = all_pipelines();
+  for (uint32_t i = 0; i < pipelines.size(); ++i) {
+    const SceneHandle scene =
+        make_scene(devices[i % devices.size()].get(), scene_, pipelines[i].options(i, rays_));
+    const Answers answers{closest_hits(scene.get(), rays_), any_hits(scene.get(), rays_)};
+    const std::string found = difference(answers, expected_, rays_);
+    ASSERT_TRUE(found.empty()) << pipelines[i].name() << ", KIWAMI_SEED=" << seed() << ", "
+                               << found;
   }
 }
 

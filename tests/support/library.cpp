@@ -98,6 +98,14 @@ SceneHandle make_scene(kiwami_device* device, const Scene& scene, const BuildOpt
   set(KIWAMI_PARAMETER_MAX_LEAF_SIZE, options.max_leaf_size);
   set(KIWAMI_PARAMETER_VALIDATE_BUILD, options.validates ? 1.0 : 0.0);
   for (const auto& [parameter, value] : options.parameters) set(parameter, value);
+  if (options.optimizers) {
+    check(
+        kiwami_scene_set_optimizers(made, options.optimizers->data(), options.optimizers->size()));
+  }
+  const std::vector<kiwami_ray>& rays = options.representative_rays;
+  if (!rays.empty()) {
+    check(kiwami_scene_set_representative_rays(made, rays.data(), 0, rays.size()));
+  }
   check(kiwami_scene_commit(made));
   return handle;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +40,9 @@ struct BuildOptions {
   bool validates = false;      ///< after each stage
   /// More of KIWAMI_PARAMETER_*, with their values.
   std::vector<std::pair<uint32_t, double>> parameters = {};
+  /// KIWAMI_OPTIMIZER_* in place of those of the quality.
+  std::optional<std::vector<uint32_t>> optimizers = {};
+  std::vector<kiwami_ray> representative_rays = {};  ///< none: sampled ones
 };
 
 /// Mesh i of the scene becomes geometry i.

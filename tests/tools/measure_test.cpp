@@ -52,6 +52,43 @@ TEST(Contest, TheProcessorsClockDoesNotCountSleep) {
   for (const double busy : seconds[1]) EXPECT_GT(busy, 1e-4);
 }
 
+TEST(SharedWork, SavesWhatOtherProcessorsWouldHaveDone) {
+  struct Loop {
+    SharedWork work{2};
+    std::vector<size_t> order;
+    size_t inner = 0;
+
+    static void spin(void* data, size_t index) {
+      static_cast<Loop*>(data)->order.push_back(index);
+      const double start = seconds_now(Clock::kProcessor);
+      while (seconds_now(Clock::kProcessor) - start < 0.004) {
+      }
+    }
+    /// A loop within a task.
+    static void nest(void* data, size_t) {
+      SharedWork::run(&static_cast<Loop*>(data)->work, static_cast<Loop*>(data)->inner, spin, data);
+    }
+  };
+  Loop four;
+  EXPECT_EQ(SharedWork::run(&four.work, 4, Loop::spin, &four), 0);
+  EXPECT_EQ(four.order, (std::vector<size_t>{0, 1, 2, 3}));
+  EXPECT_NEAR(four.work.saved_seconds(), 0.008, 0.003);
+  Loop three;
+  SharedWork::run(&three.work, 3, Loop::spin, &three);
+  EXPECT_NEAR(three.work.saved_seconds(), 0.004, 0.003);
+  Loop single;
+  SharedWork::run(&single.work, 1, Loop::spin, &single);
+  EXPECT_EQ(single.work.saved_seconds(), 0.0);
+  // A single task leaves the processors to its loop; of several, each has one to itself.
+  Loop nested;
+  nested.inner = 2;
+  SharedWork::run(&nested.work, 1, Loop::nest, &nested);
+  EXPECT_NEAR(nested.work.saved_seconds(), 0.004, 0.003);
+  SharedWork::run(&nested.work, 2, Loop::nest, &nested);
+  EXPECT_NEAR(nested.work.saved_seconds(), 0.012, 0.006);
+  EXPECT_EQ(nested.order.size(), 6u);
+}
+
 TEST(Contest, EachBitChangesTheHash) {
   std::vector<kiwami_hit> hits(3);
   std::memset(hits.data(), 0, hits.size() * sizeof hits[0]);

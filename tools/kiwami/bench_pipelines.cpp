@@ -11,9 +11,13 @@
 #include "kiwami/own_run.h"
 #include "measure/bench_rays.h"
 #include "measure/contest.h"
+#include "measure/shared_work.h"
 
 namespace kiwami::tools {
 namespace {
+
+/// Builds that take longer are not made again: they differ little.
+constexpr double kLongBuildSeconds = 0.25;
 
 /// One scene in the table.
 class PipelineBench {
@@ -21,8 +25,13 @@ class PipelineBench {
   PipelineBench(const std::string& name, const BenchSettings& settings)
       : name_(name), settings_(settings), file_(load_known_scene(name)) {
     for (const uint32_t threads : settings.threads) {
-      devices_.push_back(std::make_unique<Device>(settings.isas.front(), threads));
-      check_threads(*devices_.back(), threads);
+      works_.push_back(std::make_unique<SharedWork>(threads));
+      if (settings.clock == Clock::kProcessor && threads > 1) {
+        devices_.push_back(std::make_unique<Device>(settings.isas.front(), *works_.back()));
+      } else {
+        devices_.push_back(std::make_unique<Device>(settings.isas.front(), threads));
+        check_threads(*devices_.back(), threads);
+      }
     }
   }
 
@@ -59,36 +68,32 @@ class PipelineBench {
   std::string name_;
   const BenchSettings& settings_;
   SceneFile file_;
-  std::vector<std::unique_ptr<Device>> devices_;  ///< one for each number of threads
-  std::unique_ptr<BuiltScene> first_;             ///< by the first pipeline
+  std::vector<std::unique_ptr<SharedWork>> works_;  ///< one for each number of threads
+  std::vector<std::unique_ptr<Device>> devices_;    ///< the same
+  std::unique_ptr<BuiltScene> first_;               ///< by the first pipeline
   std::vector<BenchRays> rays_;
   std::vector<std::optional<uint64_t>> hashes_;  ///< of the first answers to each ray set
 };
 
-/// The scene that is returned is on the first device. The processor's clock adds up what threads do,
-/// so builds by several go by the time that passes, and the least disturbed one counts.
+/// The scene that is returned is on the first device.
 std::unique_ptr<BuiltScene> PipelineBench::measure_builds(const BuildOptions& pipeline,
                                                           PipelineRow& row) const {
   std::unique_ptr<BuiltScene> scene;
   std::vector<std::vector<double>> seconds(devices_.size());
-  const auto counts_least = [this](size_t i) {
-    return settings_.clock == Clock::kProcessor && settings_.threads[i] > 1;
-  };
   for (uint32_t round = 0; round < std::min(settings_.rounds, kMostBuilds); ++round) {
+    if (round > 0 && seconds.front().front() > kLongBuildSeconds) break;
     // The first device is the last one of a round, so that its scene stays.
     for (size_t i = devices_.size(); i-- > 0;) {
       scene.reset();
-      const Clock clock = counts_least(i) ? Clock::kWall : Clock::kProcessor;
-      const double start = seconds_now(clock);
+      const double start = seconds_now(Clock::kProcessor) - works_[i]->saved_seconds();
       scene = std::make_unique<BuiltScene>(*devices_[i], file_, pipeline);
-      seconds[i].push_back(settings_.clock == Clock::kProcessor ? seconds_now(clock) - start
+      const double end = seconds_now(Clock::kProcessor) - works_[i]->saved_seconds();
+      seconds[i].push_back(settings_.clock == Clock::kProcessor ? end - start
                                                                 : scene->info().build_seconds);
     }
   }
   for (size_t i = 0; i < devices_.size(); ++i) {
-    const double took = counts_least(i) ? *std::min_element(seconds[i].begin(), seconds[i].end())
-                                        : median(seconds[i]);
-    row.builds.push_back({settings_.threads[i], took * 1e3});
+    row.builds.push_back({settings_.threads[i], median(seconds[i]) * 1e3});
   }
   const kiwami_scene_info& info = scene->info();
   row.triangles = info.triangle_count;
@@ -227,7 +232,8 @@ void print_row(const PipelineRow& row, bool is_first) {
     std::printf(" %11.1f (%6.2f)", build.milliseconds, mtris_per_second(row, build));
   }
   if (!row.builds.empty()) {
-    std::printf(" %7.1f %7.1f %8.2f", row.bytes_per_triangle, row.peak_bytes_per_triangle, row.sah);
+    std::printf(" %7.1f %7.1f %8.2f %6.2f", row.bytes_per_triangle, row.peak_bytes_per_triangle,
+                row.sah, row.epo);
   }
   for (const PipelineTrace& trace : row.traces) {
     std::printf(" %13.1f %5.1f %8.3f (%4.2f)", trace.visits.nodes, trace.visits.leaves, trace.mrays,

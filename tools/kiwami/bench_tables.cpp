@@ -17,8 +17,8 @@
 namespace kiwami::tools {
 namespace {
 
-/// The rows of a table: printed as they come, and written to --json after each scene, so that a long
-/// run that is stopped has not been in vain.
+/// The rows of a table: printed as they come, and written to --json after each scene or each row, so
+/// that a long run that is stopped has not been in vain.
 class RowFile {
  public:
   explicit RowFile(const BenchOptions& options) : file_(options.json) {}
@@ -30,6 +30,7 @@ class RowFile {
     print_row(row, is_first_);
     is_first_ = false;
     add(row, to_json(row));
+    save();
   }
 
   template <typename Row>

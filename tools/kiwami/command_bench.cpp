@@ -284,10 +284,11 @@ void add_measuring_options(CLI::App& command, BenchOptions& options) {
       ->check(whole_number(1, uint64_t{1} << 28))
       ->capture_default_str();
   command
-      .add_option("--clock", options.clock,
-                  "wall: the time that passes; processor: the time spent on a processor, for one "
-                  "thread on a machine that is busy with other work (with --pipelines, builds by "
-                  "more threads go by the least time that passes)")
+      .add_option(
+          "--clock", options.clock,
+          "wall: the time that passes; processor: the time spent on a processor, for one "
+          "thread on a machine that is busy with other work; with --pipelines, more threads "
+          "are imagined, which share the tasks of a build")
       ->check(one_of({"wall", "processor"}))
       ->capture_default_str();
   command

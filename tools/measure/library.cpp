@@ -137,6 +137,20 @@ Device::Device(uint32_t isa, uint32_t thread_count) {
   throw_on_error(kiwami_device_desc_init(&desc, sizeof desc), nullptr);
   desc.isa = isa;
   desc.thread_count = thread_count;
+  create(desc);
+}
+
+Device::Device(uint32_t isa, SharedWork& work) {
+  kiwami_device_desc desc;
+  throw_on_error(kiwami_device_desc_init(&desc, sizeof desc), nullptr);
+  desc.isa = isa;
+  desc.runner = SharedWork::run;
+  desc.runner_user = &work;
+  desc.runner_width = work.processors();
+  create(desc);
+}
+
+void Device::create(const kiwami_device_desc& desc) {
   throw_on_error(kiwami_device_create(&desc, &device_), nullptr);
   info_.struct_size = sizeof info_;
   const kiwami_result result = kiwami_device_get_info(device_, &info_);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "measure/instance_paths.h"
+#include "measure/shared_work.h"
 #include "measure/tracer.h"
 #include "scene/scene_file.h"
 
@@ -35,6 +36,8 @@ class Device {
  public:
   /// `isa` is one of KIWAMI_ISA_*; 0 threads: one per processor.
   explicit Device(uint32_t isa = KIWAMI_ISA_AUTO, uint32_t thread_count = 0);
+  /// Loops run by `work`, which must outlive the device.
+  Device(uint32_t isa, SharedWork& work);
   ~Device() { kiwami_device_release(device_); }
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -43,6 +46,8 @@ class Device {
   const kiwami_device_info& info() const { return info_; }
 
  private:
+  void create(const kiwami_device_desc& desc);
+
   kiwami_device* device_ = nullptr;
   kiwami_device_info info_{};
 };
