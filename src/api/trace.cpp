@@ -144,12 +144,23 @@ kiwami_ray_fields read_ray_fields(const kiwami_ray_fields* fields, size_t count)
   return rays;
 }
 
+/// Answers a call of few rays, without a query, to a scene that the plain kernels know, and returns
+/// true; false leaves it to answer_few. A single ray takes so little time that everything else
+/// that a call looks at, and the registers that it saves for it, would be a tenth of it.
+inline bool answer_plainly(const kiwami_scene* scene, TraversalKernel TraversalKernels::*kernel,
+                           const RayBatch& batch, const kiwami_query* query) {
+  if (!scene || query || batch.count >= kParallelCount) return false;
+  const CommittedScene* committed = object_of(scene)->committed();
+  if (!committed || !committed->is_plain() || committed->validates_arguments()) return false;
+  const DefaultFloatEnvironment environment;
+  (committed->kernels().*kernel)(committed->view(), batch);
+  return true;
+}
+
 /// Answers a call of few rays with which nothing is wrong, and returns true; false leaves it to
-/// trace_array, also where a callback failed. A single ray takes so little time that what
-/// trace_array looks at, and the registers that it saves for the case of an exception, would be a
-/// tenth of it.
-inline bool answer_few(const kiwami_scene* scene, const Question& question, const RayBatch& batch,
-                       const kiwami_query* query) {
+/// trace_array, also where a callback failed.
+bool answer_few(const kiwami_scene* scene, const Question& question, const RayBatch& batch,
+                const kiwami_query* query) {
   if (!scene || batch.count >= kParallelCount) return false;
   const CommittedScene* committed = object_of(scene)->committed();
   if (!committed || committed->validates_arguments()) return false;
@@ -174,6 +185,18 @@ void trace_array(const CommittedScene& committed, const Question& question, cons
     check_array(answers_name, batch.answers, batch.answer_stride, answer_size, batch.count);
   }
   trace(committed, question, batch, request);
+}
+
+/// Answers a call that answer_plainly leaves. Out of line, so that the others do without what it
+/// needs room for.
+__attribute__((noinline)) kiwami_result answer(const kiwami_scene* scene, const Question& question,
+                                               const RayBatch& batch, size_t answer_size,
+                                               const char* answers_name,
+                                               const kiwami_query* query) {
+  if (answer_few(scene, question, batch, query)) return KIWAMI_OK;
+  return guarded(device_of(scene), [&] {
+    trace_array(committed_of(scene), question, batch, answer_size, answers_name, query);
+  });
 }
 
 /// Checks the arguments that multi-hit calls have of their own. hits is what the caller gave.
@@ -220,10 +243,8 @@ kiwami_result kiwami_closest_hit(const kiwami_scene* scene, const kiwami_ray* ra
   const RayBatch batch{
       reinterpret_cast<const unsigned char*>(rays), ray_stride ? ray_stride : sizeof(kiwami_ray),
       reinterpret_cast<unsigned char*>(hits), hit_stride ? hit_stride : sizeof(kiwami_hit), count};
-  if (answer_few(scene, kClosestHit, batch, query)) return KIWAMI_OK;
-  return guarded(device_of(scene), [&] {
-    trace_array(committed_of(scene), kClosestHit, batch, sizeof(kiwami_hit), "hits", query);
-  });
+  if (answer_plainly(scene, &TraversalKernels::closest_hit, batch, query)) return KIWAMI_OK;
+  return answer(scene, kClosestHit, batch, sizeof(kiwami_hit), "hits", query);
 }
 
 kiwami_result kiwami_any_hit(const kiwami_scene* scene, const kiwami_ray* rays, size_t ray_stride,
@@ -232,10 +253,8 @@ kiwami_result kiwami_any_hit(const kiwami_scene* scene, const kiwami_ray* rays, 
   const RayBatch batch{reinterpret_cast<const unsigned char*>(rays),
                        ray_stride ? ray_stride : sizeof(kiwami_ray), occluded,
                        stride ? stride : sizeof(uint8_t), count};
-  if (answer_few(scene, kAnyHit, batch, query)) return KIWAMI_OK;
-  return guarded(device_of(scene), [&] {
-    trace_array(committed_of(scene), kAnyHit, batch, sizeof(uint8_t), "occluded", query);
-  });
+  if (answer_plainly(scene, &TraversalKernels::any_hit, batch, query)) return KIWAMI_OK;
+  return answer(scene, kAnyHit, batch, sizeof(uint8_t), "occluded", query);
 }
 
 kiwami_result kiwami_closest_hit_fields(const kiwami_scene* scene, const kiwami_ray_fields* rays,

@@ -12,23 +12,28 @@ namespace kiwami {
 namespace KIWAMI_ISA {
 namespace {
 
-/// One ray that is set up, through the whole tree.
+/// Answers ray i of a batch, which is set up, by the whole tree.
+// Out of line, so that its loop has registers of its own; and what it finds is written where it
+// belongs, since an answer that is returned is put together in memory and copied from there.
 template <typename Query, int N, typename Probe>
-inline typename Query::Answer trace_ready(const SceneView& scene, const ReadyRay& ray,
-                                          Probe& probe) {
+__attribute__((noinline)) void trace_ready(const SceneView& scene, const ReadyRay& ray,
+                                           const RayBatch& batch, size_t i, Probe& probe) {
   Query query;
   query.begin(scene, ray);
-  traverse<N>(scene.tree, {scene.tree.root, ray.nearest}, ray, query, probe);
-  return query.answer();
+  traverse_inlined<N>(scene.tree, {scene.tree.root, ray.nearest}, ray, query, probe);
+  write_answer(batch, i, query.answer());
 }
 
 template <typename Query, int N, typename Probe>
-inline typename Query::Answer trace_one(const SceneView& scene, const UnalignedRay& ray,
-                                        Probe& probe) {
-  if (scene.tree.root.mask() == 0 || !is_traceable(ray)) return Query::miss();
+inline void trace_one(const SceneView& scene, const RayBatch& batch, size_t i, Probe& probe) {
+  const UnalignedRay& ray = ray_of(batch, i);
+  if (scene.tree.root.mask() == 0 || !is_traceable(ray)) {
+    write_answer(batch, i, Query::miss());
+    return;
+  }
   ReadyRay ready;
   set_up(ray, scene.tree, ready);
-  return trace_ready<Query, N>(scene, ready, probe);
+  trace_ready<Query, N>(scene, ready, batch, i, probe);
 }
 
 /// Rays that are set up and wait until kSize of them are traced together, and where they stand in
@@ -129,16 +134,18 @@ inline void trace_alone(const SceneView& scene, const StreamWaiting<N>& waiting,
   }
   NoProbe probe;
   for (int i = 0; i < size; ++i) {
-    write_answer(batch, waiting.index[i], trace_ready<Query, N>(scene, waiting.rays[i], probe));
+    trace_ready<Query, N>(scene, waiting.rays[i], batch, waiting.index[i], probe);
   }
 }
 
 /// Traces the rays from first on one by one.
+// Out of line, so that a call of one ray does not save the registers that streams need.
 template <typename Query, int N>
-inline void trace_singly(const SceneView& scene, const RayBatch& batch, size_t first) {
+__attribute__((noinline)) void trace_singly(const SceneView& scene, const RayBatch& batch,
+                                            size_t first) {
   NoProbe probe;
   for (size_t i = first; i < batch.count; ++i) {
-    write_answer(batch, i, trace_one<Query, N>(scene, ray_of(batch, i), probe));
+    trace_one<Query, N>(scene, batch, i, probe);
   }
 }
 
@@ -182,7 +189,7 @@ template <typename Query, int N>
 void trace_counted(const SceneView& scene, const RayBatch& batch, TraversalCounters& counters) {
   CountingProbe<N> probe{counters};
   for (size_t i = 0; i < batch.count; ++i) {
-    write_answer(batch, i, trace_one<Query, N>(scene, ray_of(batch, i), probe));
+    trace_one<Query, N>(scene, batch, i, probe);
   }
 }
 

@@ -63,9 +63,9 @@ struct QueryBase {
                                      broadcast<N>(best_bound), lanes, sheared, probe);
     if (inside == 0) return false;
     Crossings<N> crossings;
-    compute_crossings<N>(sheared, *ray, inside, crossings);
     for (; inside; inside &= inside - 1) {
       const int lane = __builtin_ctz(inside);
+      compute_crossing<N>(sheared, *ray, lane, crossings);
       const float t = crossings.t[lane];
       if (!(ray->tmin <= t && t <= ray->tmax)) continue;
       if (!is_visible(*scene, *ray, leaf.id[lane], crossings.sum[lane])) continue;

@@ -63,7 +63,7 @@ inline float bits_of(int32_t k) {
   return bits;
 }
 
-/// Writes the rows for triangles: origin and tmin, ratio and tmax, axes and shear_z.
+/// Writes the rows for triangles: origin and tmin, shears and tmax, axes and shear_z.
 template <int N>
 inline void write_triangle_rows(const RayGroup<N>& group, const vfloat<N> (&size)[3],
                                 const vfloat<N> (&reciprocal)[3], ReadyRay* const* out) {
@@ -72,34 +72,40 @@ inline void write_triangle_rows(const RayGroup<N>& group, const vfloat<N> (&size
   const auto of_major = [&](vfloat<N> x, vfloat<N> y, vfloat<N> z) {
     return select_equal(size[0], greatest, x, select_equal(size[1], greatest, y, z));
   };
-  const auto axes = [&](int x, int y, int z) {
-    return of_major(broadcast<N>(bits_of(x)), broadcast<N>(bits_of(y)), broadcast<N>(bits_of(z)));
+  const vfloat<N>(&direction)[3] = group.direction;
+  const vfloat<N> major = of_major(direction[0], direction[1], direction[2]);
+  struct Row {
+    vfloat<N> column[4];
   };
-  const vfloat<N> major = of_major(group.direction[0], group.direction[1], group.direction[2]);
-  const vfloat<N> after = axes(1, 2, 0), before = axes(2, 0, 1);
-  const vfloat<N> rows[3][4] = {
-      {group.origin[0], group.origin[1], group.origin[2], group.tmin},
-      {group.direction[0] / major, group.direction[1] / major, group.direction[2] / major,
-       group.tmax},
-      {select_negative(major, before, after), select_negative(major, after, before), axes(0, 1, 2),
-       of_major(reciprocal[0], reciprocal[1], reciprocal[2])}};
-  store_rows(rows[0], out, offsetof(ReadyRay, origin));
-  store_rows(rows[1], out, offsetof(ReadyRay, ratio));
-  store_rows(rows[2], out, offsetof(ReadyRay, kx));
+  // Values by axes of the world as values by each ray's own axes.
+  const auto by_own_axes = [&](const vfloat<N>(&axes)[3], vfloat<N> last) {
+    const vfloat<N> after = of_major(axes[1], axes[2], axes[0]);
+    const vfloat<N> before = of_major(axes[2], axes[0], axes[1]);
+    return Row{{select_negative(major, before, after), select_negative(major, after, before),
+                of_major(axes[0], axes[1], axes[2]), last}};
+  };
+  store_rows(by_own_axes(group.origin, group.tmin).column, out, offsetof(ReadyRay, origin));
+  Row shears = by_own_axes(direction, group.tmax);
+  for (int axis = 0; axis < 3; ++axis) shears.column[axis] = shears.column[axis] / major;
+  store_rows(shears.column, out, offsetof(ReadyRay, shear));
+  const vfloat<N> numbers[3] = {broadcast<N>(bits_of(0)), broadcast<N>(bits_of(1)),
+                                broadcast<N>(bits_of(2))};
+  const vfloat<N> shear_z = of_major(reciprocal[0], reciprocal[1], reciprocal[2]);
+  store_rows(by_own_axes(numbers, shear_z).column, out, offsetof(ReadyRay, axis));
 }
 
 /// Writes all rows of N rays; the lanes that are not traceable receive garbage.
 template <int N>
 inline void write_rows(RayGroup<N>& group, vfloat<N> scale, const TreeView& tree,
                        ReadyRay* const* out) {
-  vfloat<N> size[3], raised[3], reciprocal[3], origin[3], magnitude[3];
+  vfloat<N> size[3], raised[3], reciprocal[3], backward[3], magnitude[3];
   for (int axis = 0; axis < 3; ++axis) {
     size[axis] = absolute(group.direction[axis]);
     raised[axis] = max(size[axis], broadcast<N>(kLeastDirection));
     reciprocal[axis] = copy_sign(broadcast<N>(1.0f) / raised[axis], group.direction[axis]);
-    origin[axis] = group.origin[axis] - broadcast<N>(tree.centre[axis]);
+    backward[axis] = broadcast<N>(tree.centre[axis]) - group.origin[axis];
     magnitude[axis] =
-        absolute(origin[axis]) + broadcast<N>(tree.greatest_bound[axis] + kLeastMagnitude);
+        absolute(backward[axis]) + broadcast<N>(tree.greatest_bound[axis] + kLeastMagnitude);
   }
   const vfloat<N> greatest_magnitude = greatest_of<N>(magnitude);
   group.tmin = max(group.tmin, broadcast<N>(-__FLT_MAX__));
@@ -107,11 +113,11 @@ inline void write_rows(RayGroup<N>& group, vfloat<N> scale, const TreeView& tree
   const vfloat<N> slack = broadcast<N>(kLeastDistance) + broadcast<N>(kLeastDistance) * scale;
   vfloat<N> near_row[4], far_row[4];
   for (int axis = 0; axis < 3; ++axis) {
-    const vfloat<N> margin = margin_of<N>(size[axis], raised[axis], reciprocal[axis],
-                                          magnitude[axis], greatest_magnitude);
-    const vfloat<N> product = origin[axis] * reciprocal[axis];
-    near_row[axis] = broadcast<N>(0.0f) - product - margin;
-    far_row[axis] = margin - product;
+    const vfloat<N> margin =
+        copy_sign(margin_of<N>(size[axis], raised[axis], magnitude[axis], greatest_magnitude),
+                  group.direction[axis]);
+    near_row[axis] = (backward[axis] - margin) * reciprocal[axis];
+    far_row[axis] = (backward[axis] + margin) * reciprocal[axis];
   }
   near_row[3] = group.tmax * scale + slack;
   far_row[3] = scale;

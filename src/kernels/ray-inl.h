@@ -43,15 +43,17 @@ struct alignas(64) ReadyRay {
   float farthest;  ///< an upper bound of tmax, scaled
   float far_offset[3];
   float scale;  ///< scaled distance = distance * scale
-  // For triangles.
+  // For triangles, by axes of the ray's own: the last one, z, is that of the greatest component of
+  // the direction, and the first two follow so that winding is kept.
   float origin[3];
   float tmin;      ///< as given, but finite: a distance that overflows is no hit
-  float ratio[3];  ///< direction / direction[kz]; those of kx and ky are the shears
+  float shear[2];  ///< direction along x and y for one step along z
+  float one;       ///< the same of z
   float tmax;
-  int32_t kx, ky, kz;  ///< kz: axis of the greatest component; kx, ky: so that winding is kept
-  float shear_z;       ///< 1 / direction[kz]
+  uint32_t axis[3];  ///< which axes of the world these are
+  float shear_z;     ///< 1 / direction along z
   uint32_t mask, flags;
-  uint32_t backward;  ///< bit for each axis along which the ray runs backward
+  uint32_t backward;  ///< bit for each axis of the world along which the ray runs backward
   float slack;        ///< widens scaled distances
 };
 static_assert(sizeof(ReadyRay) == 128);
@@ -77,6 +79,10 @@ inline vfloat<4> direction_of(const UnalignedRay& ray) {
 
 constexpr uint32_t kAllAxes = 7;
 
+/// A ray's row that ends with tmin (tmax), that made finite. The second operand is what NaN leaves.
+inline vfloat<4> with_finite_start(vfloat<4> row) { return max(broadcast<4>(-__FLT_MAX__), row); }
+inline vfloat<4> with_finite_end(vfloat<4> row) { return min(broadcast<4>(__FLT_MAX__), row); }
+
 /// False for a ray that can only miss: NaN, zero or infinite direction, origin out of range, no
 /// finite distance between tmin and tmax, a mask without bits. Each comparison is false for NaN.
 inline bool is_traceable(const UnalignedRay& ray) {
@@ -100,21 +106,29 @@ inline double inverse_of(float power_of_two) {
   return inverse;
 }
 
-/// The direction with its greatest component brought into [1, 2), and what it was divided by.
-inline vfloat<4> scale_direction(const UnalignedRay& ray, float& scale) {
+/// A direction with its greatest component brought into [1, 2), what it was divided by, and which
+/// components are the greatest.
+struct ScaledDirection {
+  vfloat<4> value;
+  float scale;
+  uint32_t greatest;
+};
+
+inline ScaledDirection scale_direction(const UnalignedRay& ray) {
   vfloat<4> direction = direction_of(ray);
-  vfloat<4> greatest = greatest_of_three(absolute(direction));
+  vfloat<4> size = absolute(direction);
+  vfloat<4> greatest = greatest_of_three(size);
   const uint32_t exponent_field = first_bits(greatest) >> 23;
   float step = 1.0f;
   if (__builtin_expect(exponent_field == 0 || exponent_field == 254, 0)) {
     // The inverse of this power of two would not be a normal float: a step before leads there.
     step = exponent_field == 0 ? 0x1p-64f : 2.0f;
     direction = direction * broadcast<4>(1.0f / step);
-    greatest = greatest_of_three(absolute(direction));
+    size = absolute(direction);
+    greatest = greatest_of_three(size);
   }
   const vfloat<4> power = power_of_two_below(greatest);
-  scale = first_lane(power) * step;
-  return direction * inverse_of_power(power);
+  return {direction * inverse_of_power(power), first_lane(power) * step, equal(size, greatest)};
 }
 
 /// Where in a node the planes lie that a ray meets first and last along each axis, in bytes, for
@@ -160,66 +174,87 @@ struct SlabRay {
 inline float scaled_lower(const ReadyRay& ray, float t) { return t * ray.scale - ray.slack; }
 inline float scaled_upper(const ReadyRay& ray, float t) { return t * ray.scale + ray.slack; }
 
-/// The axis of the greatest component, the lowest of equal ones, and the other two in the order
-/// that keeps the winding. Neither is branched on: directions are too mixed to be predicted.
-inline void choose_axes(vfloat<4> direction, ReadyRay& out) {
-  const vfloat<4> size = absolute(direction);
-  const int kz = __builtin_ctz(equal(size, greatest_of_three(size)));
-  const int is_negative = static_cast<int>(sign_bits(direction) >> kz) & 1;
-  // Two bits for each kz: the axis after it and the one before it; exchanged for backward rays.
-  constexpr int after = 0b001001, before = 0b010010;
-  const int entry = 6 * is_negative + 2 * kz;
-  out.kz = kz;
-  out.kx = ((before << 6 | after) >> entry) & 3;
-  out.ky = ((after << 6 | before) >> entry) & 3;
+/// The axes of a ray: which lanes become its first three, and their numbers.
+struct AxisChoice {
+  LaneOrder lanes;
+  alignas(16) uint32_t axis[4];
+};
+
+constexpr AxisChoice axis_choice(uint32_t major, bool is_backward) {
+  const uint32_t after = (major + 1) % 3, before = (major + 2) % 3;
+  AxisChoice choice{{}, {is_backward ? before : after, is_backward ? after : before, major, 0}};
+  const uint32_t lanes[4] = {choice.axis[0], choice.axis[1], major, 3};
+  for (uint32_t byte = 0; byte < 16; ++byte) {
+    choice.lanes.byte[byte] = static_cast<uint8_t>(4 * lanes[byte / 4] + byte % 4);
+  }
+  return choice;
 }
 
-/// The margin of the slabs along each axis. M_kz is taken as the greatest M of all axes, S_a as
-/// |d_a| and 1 / |d_kz| as 1: all no less than they are, since |d_kz| lies in [1, 2), and known
-/// without looking for kz.
+constexpr AxisChoice kAxisChoices[6] = {axis_choice(0, false), axis_choice(0, true),
+                                        axis_choice(1, false), axis_choice(1, true),
+                                        axis_choice(2, false), axis_choice(2, true)};
+
+/// The third is the axis of the greatest component, the lowest of equal ones; the other two are in
+/// the order that keeps the winding. Nothing is branched on: directions are too mixed to be
+/// predicted.
+inline const AxisChoice& choose_axes(const ScaledDirection& direction, uint32_t signs) {
+  const uint32_t major = static_cast<uint32_t>(__builtin_ctz(direction.greatest));
+  return kAxisChoices[2 * major + ((signs >> major) & 1u)];
+}
+
+/// By how much the origin is moved along each axis, backward for where a ray enters a slab and
+/// forward for where it leaves: the margin times the direction. M_kz is taken as the greatest M of
+/// all axes, S_a as |d_a| and 1 / |d_kz| as 1: all no less than they are, since |d_kz| lies in
+/// [1, 2), and known without looking for kz.
 template <int N>
-inline vfloat<N> margin_of(vfloat<N> size, vfloat<N> raised, vfloat<N> reciprocal,
-                           vfloat<N> magnitude, vfloat<N> greatest_magnitude) {
+inline vfloat<N> margin_of(vfloat<N> size, vfloat<N> raised, vfloat<N> magnitude,
+                           vfloat<N> greatest_magnitude) {
   const vfloat<N> rounding = broadcast<N>(kMargin) * (magnitude + size * greatest_magnitude);
   // A raised component moves the point by what was added, times t <= M_kz / |d_kz|. That may be all
   // of t, so its own roundings count as well: four of t, six of the term on its way to the slab's
   // distance and two of the sums there, 12 u in all.
   const vfloat<N> moved = (raised - size) * greatest_magnitude * broadcast<N>(1.0f + kRaisedMargin);
-  return (rounding + moved) * absolute(reciprocal);
+  return rounding + moved;
+}
+
+/// The rows for boxes, with tmin, tmax and scale in their last lanes.
+inline void set_up_slabs(const ScaledDirection& direction, vfloat<4> start, vfloat<4> end,
+                         const TreeView& tree, ReadyRay& out) {
+  const vfloat<4> size = absolute(direction.value);
+  const vfloat<4> raised = max(size, broadcast<4>(kLeastDirection));
+  const vfloat<4> reciprocal = copy_sign(broadcast<4>(1.0f) / raised, direction.value);
+  const vfloat<4> backward = load<4>(reinterpret_cast<const float*>(&tree.centre)) - start;
+  const vfloat<4> magnitude =
+      absolute(backward) + (load<4>(reinterpret_cast<const float*>(&tree.greatest_bound)) +
+                            broadcast<4>(kLeastMagnitude));
+  const vfloat<4> margin = copy_sign(
+      margin_of<4>(size, raised, magnitude, greatest_of_three(magnitude)), direction.value);
+  const vfloat<4> scale = broadcast<4>(direction.scale);
+  const vfloat<4> slack = broadcast<4>(kLeastDistance) + broadcast<4>(kLeastDistance) * scale;
+  store_row(out, offsetof(ReadyRay, reciprocal), with_last_of(reciprocal, start * scale - slack));
+  store_row(out, offsetof(ReadyRay, near_offset),
+            with_last_of((backward - margin) * reciprocal, end * scale + slack));
+  store_row(out, offsetof(ReadyRay, far_offset),
+            with_last_of((backward + margin) * reciprocal, scale));
+  out.slack = first_lane(slack);
 }
 
 /// One ray that is_traceable, with the axes in the lanes.
 inline void set_up(const UnalignedRay& ray, const TreeView& tree, ReadyRay& out) {
-  float scale;
-  const vfloat<4> direction = scale_direction(ray, scale);
-  const vfloat<4> size = absolute(direction);
-  const vfloat<4> raised = max(size, broadcast<4>(kLeastDirection));
-  const vfloat<4> reciprocal = copy_sign(broadcast<4>(1.0f) / raised, direction);
-  const vfloat<4> origin = origin_of(ray) - load<4>(reinterpret_cast<const float*>(&tree.centre));
-  const vfloat<4> magnitude =
-      absolute(origin) + (load<4>(reinterpret_cast<const float*>(&tree.greatest_bound)) +
-                          broadcast<4>(kLeastMagnitude));
-  const vfloat<4> margin =
-      margin_of<4>(size, raised, reciprocal, magnitude, greatest_of_three(magnitude));
-  const vfloat<4> product = origin * reciprocal;
-  store_row(out, offsetof(ReadyRay, reciprocal), reciprocal);
-  store_row(out, offsetof(ReadyRay, near_offset), broadcast<4>(0.0f) - product - margin);
-  store_row(out, offsetof(ReadyRay, far_offset), margin - product);
-  store_row(out, offsetof(ReadyRay, origin), origin_of(ray));
-  choose_axes(direction, out);
-  float components[4];
-  store(components, direction);
-  store_row(out, offsetof(ReadyRay, ratio), direction / broadcast<4>(components[out.kz]));
-  out.shear_z = out.reciprocal[out.kz];
-  out.scale = scale;
-  out.slack = kLeastDistance + kLeastDistance * scale;
-  out.tmin = ray.tmin > -__FLT_MAX__ ? ray.tmin : -__FLT_MAX__;
-  out.tmax = ray.tmax < __FLT_MAX__ ? ray.tmax : __FLT_MAX__;
-  out.nearest = scaled_lower(out, out.tmin);
-  out.farthest = scaled_upper(out, out.tmax);
+  const ScaledDirection direction = scale_direction(ray);
+  const vfloat<4> start = with_finite_start(origin_of(ray));
+  const vfloat<4> end = with_finite_end(direction_of(ray));
+  set_up_slabs(direction, start, end, tree, out);
+  const uint32_t signs = sign_bits(direction.value);
+  const AxisChoice& choice = choose_axes(direction, signs);
+  const vfloat<4> along = rearrange(direction.value, choice.lanes);
+  store_row(out, offsetof(ReadyRay, origin), rearrange(start, choice.lanes));
+  store_row(out, offsetof(ReadyRay, shear), with_last_of(along / third_in_all(along), end));
+  store_row(out, offsetof(ReadyRay, axis), load<4>(reinterpret_cast<const float*>(choice.axis)));
+  out.shear_z = out.reciprocal[choice.axis[2]];
   out.mask = ray.mask;
   out.flags = ray.flags;
-  out.backward = sign_bits(direction) & kAllAxes;
+  out.backward = signs & kAllAxes;
 }
 
 }  // namespace

@@ -158,9 +158,13 @@ __attribute__((always_inline)) inline bool advance(const TreeView& tree, const S
 }
 
 /// Visits what the query has to see of the subtree at start. Returns true if the query ended it.
+// Inlined by force, for single rays of plain scenes: in a function of its own the query and the ray
+// are reached through pointers, which takes registers from the loop.
 template <int N, typename Query, typename Probe>
-inline bool traverse(const TreeView& tree, const StackEntry& start, const ReadyRay& ready,
-                     Query& query, Probe& probe) {
+__attribute__((always_inline)) inline bool traverse_inlined(const TreeView& tree,
+                                                            const StackEntry& start,
+                                                            const ReadyRay& ready, Query& query,
+                                                            Probe& probe) {
   const SlabRay<N> ray(ready);
   StackEntry stack[kStackSize<N>];
   StackEntry* top = stack;
@@ -169,6 +173,13 @@ inline bool traverse(const TreeView& tree, const StackEntry& start, const ReadyR
   while (!advance<N>(tree, ray, query, probe, stack, top, current, is_done)) {
   }
   return is_done;
+}
+
+/// The same where there are many kinds of queries.
+template <int N, typename Query, typename Probe>
+inline bool traverse(const TreeView& tree, const StackEntry& start, const ReadyRay& ready,
+                     Query& query, Probe& probe) {
+  return traverse_inlined<N>(tree, start, ready, query, probe);
 }
 
 }  // namespace

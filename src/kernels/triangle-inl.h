@@ -49,17 +49,17 @@ template <int N, typename Probe>
 inline uint32_t test_inside(const LeafBlock<N>& leaf, const ReadyRay& ray, vfloat<N> nearest,
                             vfloat<N> farthest, uint32_t lanes, ShearedBlock<N>& sheared,
                             Probe& probe) {
-  const vfloat<N> origin_x = broadcast<N>(ray.origin[ray.kx]);
-  const vfloat<N> origin_y = broadcast<N>(ray.origin[ray.ky]);
-  const vfloat<N> origin_z = broadcast<N>(ray.origin[ray.kz]);
-  const vfloat<N> shear_x = broadcast<N>(ray.ratio[ray.kx]);
-  const vfloat<N> shear_y = broadcast<N>(ray.ratio[ray.ky]);
+  const vfloat<N> origin_x = broadcast<N>(ray.origin[0]);
+  const vfloat<N> origin_y = broadcast<N>(ray.origin[1]);
+  const vfloat<N> origin_z = broadcast<N>(ray.origin[2]);
+  const vfloat<N> shear_x = broadcast<N>(ray.shear[0]);
+  const vfloat<N> shear_y = broadcast<N>(ray.shear[1]);
   const vfloat<N> shear_z = broadcast<N>(ray.shear_z);
   vfloat<N> x[3], y[3], z[3];
   for (int k = 0; k < 3; ++k) {
-    const vfloat<N> along = load<N>(leaf.position[k][ray.kz]) - origin_z;
-    x[k] = (load<N>(leaf.position[k][ray.kx]) - origin_x) - shear_x * along;
-    y[k] = (load<N>(leaf.position[k][ray.ky]) - origin_y) - shear_y * along;
+    const vfloat<N> along = load<N>(leaf.position[k][ray.axis[2]]) - origin_z;
+    x[k] = (load<N>(leaf.position[k][ray.axis[0]]) - origin_x) - shear_x * along;
+    y[k] = (load<N>(leaf.position[k][ray.axis[1]]) - origin_y) - shear_y * along;
     z[k] = shear_z * along;
   }
   const vfloat<N> u = x[2] * y[1] - y[2] * x[1];
@@ -85,7 +85,8 @@ inline uint32_t test_inside(const LeafBlock<N>& leaf, const ReadyRay& ray, vfloa
   return inside;
 }
 
-/// What is known of accepted lanes: the distance, and the edge functions in double.
+/// What is known of lanes that the ray passes through: the distance, and the edge functions in
+/// double.
 template <int N>
 struct Crossings {
   float t[N];
@@ -93,29 +94,26 @@ struct Crossings {
   double sum[N];      ///< of all three; positive for a triangle seen from its front
 };
 
-/// Computes the lanes in inside, in double from the float sheared vertices, t rounded once: the
-/// float forms leave the triangle's own box on slivers or on grazing triangles. Four lanes at a
-/// time, and only where there are any; the other lanes receive garbage.
+/// Computes one lane, in double from the float sheared vertices, t rounded once: the float forms
+/// leave the triangle's own box on slivers or on grazing triangles. A lane after the other, since
+/// most leaves have no more than one, and which of its vectors that is in cannot be predicted.
 template <int N>
-inline void compute_crossings(const ShearedBlock<N>& block, const ReadyRay& ray, uint32_t inside,
-                              Crossings<N>& out) {
-  for (int first = 0; first < N; first += 4) {
-    if (((inside >> first) & 0xFu) == 0) continue;
-    const vdouble4 ax = load_widened(block.x[0] + first), ay = load_widened(block.y[0] + first);
-    const vdouble4 bx = load_widened(block.x[1] + first), by = load_widened(block.y[1] + first);
-    const vdouble4 cx = load_widened(block.x[2] + first), cy = load_widened(block.y[2] + first);
-    const vdouble4 u = cx * by - cy * bx;
-    const vdouble4 v = ax * cy - ay * cx;
-    const vdouble4 w = bx * ay - by * ax;
-    const vdouble4 sum = (u + v) + w;
-    const vdouble4 along =
-        (u * load_widened(block.z[0] + first) + v * load_widened(block.z[1] + first)) +
-        w * load_widened(block.z[2] + first);
-    store_rounded(out.t + first, along / sum * broadcast_double(inverse_of(ray.scale)));
-    store(out.v + first, v);
-    store(out.w + first, w);
-    store(out.sum + first, sum);
-  }
+inline void compute_crossing(const ShearedBlock<N>& block, const ReadyRay& ray, int lane,
+                             Crossings<N>& out) {
+  const double ax = block.x[0][lane], ay = block.y[0][lane];
+  const double bx = block.x[1][lane], by = block.y[1][lane];
+  const double cx = block.x[2][lane], cy = block.y[2][lane];
+  const double u = cx * by - cy * bx;
+  const double v = ax * cy - ay * cx;
+  const double w = bx * ay - by * ax;
+  const double sum = (u + v) + w;
+  const double along =
+      (u * static_cast<double>(block.z[0][lane]) + v * static_cast<double>(block.z[1][lane])) +
+      w * static_cast<double>(block.z[2][lane]);
+  out.t[lane] = static_cast<float>(along / sum * inverse_of(ray.scale));
+  out.v[lane] = v;
+  out.w[lane] = w;
+  out.sum[lane] = sum;
 }
 
 }  // namespace

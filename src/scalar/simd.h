@@ -5,7 +5,8 @@
 //   multiply_add, square_root,
 //                  comparisons to bit masks, signs, selections, powers of two; rows to columns and
 //                  back, also from rows at any address
-//   vfloat<4>      also greatest_of_three, first_bits, first_lane: for axes in lanes
+//   vfloat<4>      also greatest_of_three, first_bits, first_lane, third_in_all, with_last_of,
+//                  rearrange: for axes in lanes
 //   Uniform3<N>    3 floats, each to be read as a vector of equal lanes, many times
 //   vdouble4       4 doubles, read from and written to floats; comparison to a bit mask
 //
@@ -160,6 +161,19 @@ KIWAMI_INLINE vfloat<N> inverse_of_power(vfloat<N> a) {
   });
 }
 KIWAMI_INLINE float first_lane(vfloat<4> a) { return a.lane[0]; }
+/// The third lane in all four.
+KIWAMI_INLINE vfloat<4> third_in_all(vfloat<4> a) { return broadcast<4>(a.lane[2]); }
+/// The first three lanes of a and the last of b.
+KIWAMI_INLINE vfloat<4> with_last_of(vfloat<4> a, vfloat<4> b) {
+  return {{a.lane[0], a.lane[1], a.lane[2], b.lane[3]}};
+}
+/// An order of four lanes, by the bytes of each.
+struct alignas(16) LaneOrder {
+  uint8_t byte[16];
+};
+KIWAMI_INLINE vfloat<4> rearrange(vfloat<4> a, const LaneOrder& order) {
+  return lane_by_lane<4>([&](int i) { return a.lane[order.byte[4 * i] / 4]; });
+}
 /// The bits of the first lane.
 KIWAMI_INLINE uint32_t first_bits(vfloat<4> a) {
   uint32_t bits;

@@ -85,6 +85,19 @@ inline vfloat<4> inverse_of_power(vfloat<4> a) {
       simde_mm_sub_epi32(simde_mm_set1_epi32(254 << 23), simde_mm_castps_si128(a.value)))};
 }
 inline float first_lane(vfloat<4> a) { return simde_mm_cvtss_f32(a.value); }
+inline vfloat<4> third_in_all(vfloat<4> a) {
+  return {simde_mm_shuffle_ps(a.value, a.value, SIMDE_MM_SHUFFLE(2, 2, 2, 2))};
+}
+inline vfloat<4> with_last_of(vfloat<4> a, vfloat<4> b) {
+  return {simde_mm_blend_ps(a.value, b.value, 8)};
+}
+struct alignas(16) LaneOrder {
+  uint8_t byte[16];
+};
+inline vfloat<4> rearrange(vfloat<4> a, const LaneOrder& order) {
+  const simde__m128i bytes = simde_mm_load_si128(reinterpret_cast<const simde__m128i*>(order.byte));
+  return {simde_mm_castsi128_ps(simde_mm_shuffle_epi8(simde_mm_castps_si128(a.value), bytes))};
+}
 inline uint32_t first_bits(vfloat<4> a) {
   return static_cast<uint32_t>(simde_mm_cvtsi128_si32(simde_mm_castps_si128(a.value)));
 }
