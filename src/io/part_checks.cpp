@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/part_checks.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "core/error.h"
 #include "core/instance_bounds.h"
@@ -65,6 +67,34 @@ bool is_step(const float* step, TransformFormat format) {
          (step[kSquaredAngle] >= 0.0f && step[kSquaredAngle] <= kMaxSquaredAngle);
 }
 
+/// Whether an array has such an instance, and rays can be carried by its matrix and by what the
+/// commit made of it: in general just that.
+bool is_resting(const InstanceArray& array, size_t instance, const InstanceRecord& record) {
+  if (array.indices && array.indices[instance] >= array.scene_count) return false;
+  float rows[12], inverse[4][3];
+  std::memcpy(rows, array.matrices + instance * sizeof rows, sizeof rows);
+  if (!invert_for_rays(rows, inverse)) return false;
+  return std::memcmp(inverse, record.column, sizeof inverse) == 0 ||
+         is_usable(transform_of(record.column));
+}
+
+void check_array(const InstanceArray& array, std::span<const InstanceRecord> records,
+                 std::span<const uint32_t> shown, const Parallel& parallel) {
+  // Where there are too few or too many records, all of them are refused later.
+  const auto first = std::min<size_t>(static_cast<size_t>(array.numbers.first), records.size());
+  records = records.subspan(first);
+  records = records.first(std::min<size_t>(records.size(), array.numbers.count));
+  const size_t wrong = first_wrong(records.size(), parallel, [&](size_t i) {
+    return records[i].prototype < shown.size() &&
+           (!array.matrices || is_resting(array, i, records[i]));
+  });
+  if (wrong == records.size()) return;
+  fail(
+      "instance %zu shows scene %u of %zu by a transform that is singular or not finite, or none "
+      "of them",
+      first + wrong, records[wrong].prototype, shown.size());
+}
+
 }  // namespace
 
 void check_instances(const SavedInstances& instances, const InstanceContents& contents,
@@ -73,18 +103,9 @@ void check_instances(const SavedInstances& instances, const InstanceContents& co
   check_numbers(instances.moving.bounds, instances.moving.error, instances.moving.far_origin);
   const auto& records = instances.records;
   const auto& shown = contents.shown;
-  size_t wrong = first_wrong(records.size(), parallel, [&](size_t i) {
-    return records[i].prototype < shown.size() &&
-           (contains(contents.moving, i) || is_usable(transform_of(records[i].column)));
-  });
-  if (wrong != records.size()) {
-    fail(
-        "instance %zu shows scene %u of %zu by a transform that is singular or not finite, or "
-        "none of them",
-        wrong, records[wrong].prototype, shown.size());
-  }
+  for (const InstanceArray& array : contents.arrays) check_array(array, records, shown, parallel);
   const auto& starts = instances.starts;
-  wrong = first_wrong(starts.size(), parallel, [&](size_t i) {
+  const size_t wrong = first_wrong(starts.size(), parallel, [&](size_t i) {
     const InstanceStart& start = starts[i];
     if (start.instance >= records.size() || !contains(contents.resting, start.instance)) {
       return false;

@@ -12,15 +12,24 @@
 
 namespace kiwami::file {
 
+/// A committed array of instances.
+struct InstanceArray {
+  IdRange numbers;
+  const unsigned char* matrices;  ///< 12 floats of each; nullptr: they move
+  const uint32_t* indices;        ///< of each, among the scenes that it shows; nullptr: 0
+  uint32_t scene_count;
+};
+
 /// What the committed instances of a scene are.
 struct InstanceContents {
   std::span<const uint32_t> shown;  ///< the scenes that they show, by their numbers in the file
+  std::span<const InstanceArray> arrays;
   std::span<const IdRange> resting, moving;  ///< their own numbers
 };
 
-/// Checks that every instance is of one of the shown scenes and, where it rests, can be entered,
-/// and that re-braided ones, which rest, start at references of their trees, which have been
-/// checked. Throws Error(INVALID_FILE).
+/// Checks that every instance is of one of the shown scenes and, where it rests, can be entered, as
+/// it was committed and as its array has it now; and that re-braided ones, which rest, start at
+/// references of their trees, which have been checked. Throws Error(INVALID_FILE).
 void check_instances(const SavedInstances& instances, const InstanceContents& contents,
                      const SavedForest& forest, const Parallel& parallel);
 

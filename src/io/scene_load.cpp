@@ -131,8 +131,10 @@ class SceneLoader {
     const SavedGeometries geometries(reader_, number);
     heights_[number] = 0;
     geometries.for_each([&](uint32_t id, const SavedGeometry& saved) {
-      const auto geometry =
-          make_geometry(saved, scenes_of(saved, number, scenes), device_, *image_, is_trusted_);
+      // Those are checked with their records, or where they are committed anew.
+      const bool is_checked_later = saved.kind() == SavedKind::kInstances && saved.has(kCommitted);
+      const auto geometry = make_geometry(saved, scenes_of(saved, number, scenes), device_, *image_,
+                                          is_trusted_ || is_checked_later);
       scene.attach_as(id, *geometry);
       scene.enable(id, saved.has(kCommitted));
     });
@@ -289,6 +291,7 @@ class SceneLoader {
     Memory& memory = device_.memory();
     GrowingArray<uint32_t> shown(memory);
     GrowingArray<IdRange> resting(memory), moving(memory);
+    GrowingArray<InstanceArray> arrays(memory);
     std::span<const float> steps = parts.instances.moving.steps;
     std::span<const uint32_t> regular = parts.instances.moving.regular;
     uint64_t next = 0;
@@ -309,9 +312,14 @@ class SceneLoader {
         steps = steps.subspan(taken);
         regular = regular.subspan(regular.empty() ? 0 : 1);
       }
-      if (is_instances(saved.kind())) next += range.count;
+      if (!is_instances(saved.kind())) return;
+      arrays.push_back({range, saved.kind() == SavedKind::kInstances ? saved.buffers[0] : nullptr,
+                        reinterpret_cast<const uint32_t*>(saved.buffers[1]),
+                        saved.record.scene_count});
+      next += range.count;
     });
     const InstanceContents contents = {{shown.data(), shown.size()},
+                                       {arrays.data(), arrays.size()},
                                        {resting.data(), resting.size()},
                                        {moving.data(), moving.size()}};
     const IdRange starts = {0, parts.instances.starts.size()};

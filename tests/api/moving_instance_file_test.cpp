@@ -14,8 +14,9 @@ namespace {
 
 using namespace kiwami_tests;
 
-constexpr uint32_t kTrees = 2, kGeometries = 3, kTreeRecords = 5, kRecords = 14, kStarts = 16,
-                   kMeshBoxes = 17, kMovingRecord = 24, kSteps = 25, kBoxes = 26, kArrays = 27;
+constexpr uint32_t kTrees = 2, kGeometries = 3, kBuffers = 4, kTreeRecords = 5, kRecords = 14,
+                   kStarts = 16, kMeshBoxes = 17, kMovingRecord = 24, kSteps = 25, kBoxes = 26,
+                   kArrays = 27;
 
 using Matrix = std::array<float, 12>;
 
@@ -274,6 +275,41 @@ TEST_F(MovingInstanceFile, OfInstancesInTheWrongTreeIsRefused) {
   }
   const Bytes rebraided = saved(make_both(KIWAMI_TRANSFORM_MATRIX, KIWAMI_REBRAID_FULL));
   expect_refused(rebraided, kStarts, 0, moving, "start 0 is of instance 1");
+}
+
+/// An instance that rests is looked at as it was committed, and as a new commit would find it.
+TEST_F(MovingInstanceFile, OfRestingInstancesThatCannotBeEnteredIsRefused) {
+  const Bytes file = saved(make_both(KIWAMI_TRANSFORM_MATRIX, KIWAMI_REBRAID_OFF));
+  const char* const sentence = "instance 0 shows scene 0 of 2 by a transform that is singular";
+  for (const uint32_t type : {kBuffers, kRecords}) {
+    expect_refused(file, type, 0, std::nanf(""), sentence);
+    expect_refused(file, type, 0, Matrix{}, sentence);
+  }
+  // Buffers that are shared may have changed since the commit: both may be right.
+  const Matrix other = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  for (const uint32_t type : {kBuffers, kRecords}) {
+    Bytes changed = file;
+    std::memcpy(&changed[section_of(file, type).offset], other.data(), sizeof other);
+    if (type == kBuffers) {
+      std::memcpy(&changed[section_of(file, type).offset], moved_by(3.0f).data(), sizeof other);
+    }
+    forge_checksums(changed);
+    Scene loaded;
+    EXPECT_EQ(load(device_, changed, 0, loaded), KIWAMI_OK) << last_error();
+    EXPECT_EQ(kiwami_scene_commit(loaded.get()), KIWAMI_OK) << last_error();
+  }
+  // What is built anew goes by the array alone.
+  Bytes changed = file;
+  std::memset(&changed[section_of(file, kBuffers).offset], 0, sizeof(Matrix));
+  forge_checksums(changed);
+  kiwami_load_desc desc = default_load();
+  desc.data = changed.data();
+  desc.size = changed.size();
+  desc.bvh_width = info_of(make_both(KIWAMI_TRANSFORM_MATRIX, 0)).bvh_width == 4 ? 8 : 4;
+  Scene loaded;
+  EXPECT_EQ(load(device_, desc, loaded), KIWAMI_ERROR_INVALID_FILE);
+  EXPECT_NE(last_error().find("the transform of instance 0 is singular"), std::string::npos)
+      << last_error();
 }
 
 TEST_F(MovingInstanceFile, OfNumbersThatNoMotionHasIsRefused) {
