@@ -16,13 +16,14 @@ constexpr size_t kBlockSize = 2048;
 /// more of the clusters join in each round.
 constexpr uint64_t kMostWork = 32;
 
-/// The rounds of joining. A cluster is the node that it will be; when it joins another one, both
-/// are written to the pair of slots that is free next.
+/// The rounds of joining. A cluster is the node that it will be, but that it holds the number of its
+/// primitives in any case, and a leaf the id of its own; when it joins another one, both are written
+/// to the pair of slots that is free next.
 class Clustering {
  public:
-  Clustering(Array<BinaryNode> leaves, uint32_t radius, BinaryBvh& bvh, Memory& memory,
+  Clustering(Array<BinaryNode> leaves, uint32_t radius, Array<BinaryNode>& nodes, Memory& memory,
              const Parallel& parallel)
-      : bvh_(bvh),
+      : nodes_(nodes),
         memory_(memory),
         radius_(radius),
         count_(leaves.size()),
@@ -44,7 +45,7 @@ class Clustering {
       });
       join();
     }
-    bvh_.nodes[0] = clusters_[0];
+    nodes_[0] = clusters_[0];
   }
 
  private:
@@ -108,15 +109,15 @@ class Clustering {
       const size_t other = nearest_[i];
       if (other < i) continue;
       const uint32_t first = 2 * next.pair++ + 1;
-      bvh_.nodes[first] = clusters_[i];
-      bvh_.nodes[first + 1] = clusters_[other];
+      nodes_[first] = clusters_[i];
+      nodes_[first + 1] = clusters_[other];
       Bounds both = clusters_[i].bounds;
       both.extend(clusters_[other].bounds);
-      joined_[next.cluster++] = {both, first, 0};
+      joined_[next.cluster++] = {both, first, clusters_[i].count + clusters_[other].count};
     }
   }
 
-  BinaryBvh& bvh_;
+  Array<BinaryNode>& nodes_;
   Memory& memory_;
   uint32_t radius_;
   size_t count_;
@@ -127,13 +128,69 @@ class Clustering {
   uint32_t pairs_ = 0;
 };
 
+/// Numbers the nodes that clustering wrote as relabel_depth_first does. The numbers of primitives
+/// tell where each subtree goes, so threads copy different ones, and to another array: following
+/// cycles through one waits for memory at each step.
+class DepthFirstCopy {
+ public:
+  DepthFirstCopy(const Array<BinaryNode>& from, BinaryBvh& to, Memory& memory)
+      : from_(from), to_(to), memory_(memory) {}
+
+  void run(const Parallel& parallel) {
+    GrowingArray<Subtree> open(memory_), parts(memory_);
+    open.push_back({0, 0, 1, 0});
+    while (!open.empty()) {
+      const Subtree top = open.back();
+      open.pop_back();
+      if (from_[top.from].count <= kBlockSize) {
+        parts.push_back(top);
+      } else {
+        place(top, open);
+      }
+    }
+    parallel.for_each(parts.size(), [&](size_t i) {
+      GrowingArray<Subtree> below(memory_);
+      below.push_back(parts[i]);
+      while (!below.empty()) {
+        const Subtree top = below.back();
+        below.pop_back();
+        place(top, below);
+      }
+    });
+  }
+
+ private:
+  struct Subtree {
+    uint32_t from, to;  ///< its root
+    uint32_t next;      ///< where the nodes below the root begin
+    uint32_t id;        ///< where its primitives begin
+  };
+
+  /// Copies the root, and leaves what is below it in `open`, what stands left on top.
+  void place(const Subtree& subtree, GrowingArray<Subtree>& open) {
+    const BinaryNode& node = from_[subtree.from];
+    if (node.count == 1) {
+      to_.nodes[subtree.to] = {node.bounds, subtree.id, 1};
+      to_.primitive_ids[subtree.id] = node.first;
+      return;
+    }
+    const uint32_t first = node.first, next = subtree.next, left = from_[first].count;
+    to_.nodes[subtree.to] = {node.bounds, next, 0};
+    open.push_back({first + 1, next + 1, next + 2 * left, subtree.id + left});
+    open.push_back({first, next, next + 2, subtree.id});
+  }
+
+  const Array<BinaryNode>& from_;
+  BinaryBvh& to_;
+  Memory& memory_;
+};
+
 }  // namespace
 
 BinaryBvh PlocBuilder::build(Array<BuildPrimitive> primitives, const Config& config, Memory& memory,
                              const Parallel& parallel) {
   if (primitives.empty()) return {};
   const size_t count = primitives.size();
-  BinaryBvh bvh{{}, Array<uint32_t>(memory, count)};
   Array<BinaryNode> leaves;
   {
     const MortonOrder order =
@@ -141,14 +198,15 @@ BinaryBvh PlocBuilder::build(Array<BuildPrimitive> primitives, const Config& con
     leaves = Array<BinaryNode>(memory, count);
     parallel.for_blocks(count, kBlockSize, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
-        bvh.primitive_ids[i] = order.primitives[i].id;
-        leaves[i] = {order.primitives[i].bounds(), static_cast<uint32_t>(i), 1};
+        leaves[i] = {order.primitives[i].bounds(), order.primitives[i].id, 1};
       }
     });
   }
-  bvh.nodes = Array<BinaryNode>(memory, 2 * count - 1);
-  Clustering(std::move(leaves), config.radius, bvh, memory, parallel).run();
-  relabel_depth_first(bvh, memory);
+  Array<BinaryNode> nodes(memory, 2 * count - 1);
+  Clustering(std::move(leaves), config.radius, nodes, memory, parallel).run();
+  BinaryBvh bvh{Array<BinaryNode>(memory, nodes.size()), Array<uint32_t>(memory, count)};
+  DepthFirstCopy(nodes, bvh, memory).run(parallel);
+  nodes = {};
   limit_depth(bvh, memory);
   return bvh;
 }
