@@ -232,6 +232,12 @@ inline bool visit_discs(const ShapeSource& source, const float* rows, const Inde
   return false;
 }
 
+/// A ray as the tests of shapes read it.
+struct ShapeRay {
+  WideRay<double> wide;
+  float origin[3], unit[3];  ///< and the direction of length 1, for curve segments
+};
+
 /// Which segments' capsules, as wide as their greater radius, the ray may meet. Most rays miss most
 /// of a leaf, which single precision tells in all lanes at once; the others are looked at in double.
 ///
@@ -241,14 +247,14 @@ inline bool visit_discs(const ShapeSource& source, const float* rows, const Inde
 /// by 3 u |f|, less than half of kCapsuleMargin. The other half is more than what a crossing of the
 /// cone may lie outside (kConeTolerance). Lanes that overflow are kept, and so are tiny ones.
 template <int N>
-inline uint32_t near_lanes(const ReadyRay& ray, const float (&unit)[3],
-                           const PointRows<N> (&points)[2]) {
+inline uint32_t near_lanes(const ShapeRay& ray, const PointRows<N> (&points)[2]) {
   constexpr float kCapsuleMargin = 0x1p-18f, kLeastReach = 0x1p-60f, kGreatestSize = 0x1p+60f;
   static_assert(kCapsuleMargin >= 2 * kConeTolerance);
   const auto product = [](const vfloat<N>(&a)[3], const vfloat<N>(&b)[3]) {
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
   };
-  const vfloat<N> along[3] = {broadcast<N>(unit[0]), broadcast<N>(unit[1]), broadcast<N>(unit[2])};
+  const vfloat<N> along[3] = {broadcast<N>(ray.unit[0]), broadcast<N>(ray.unit[1]),
+                              broadcast<N>(ray.unit[2])};
   const vfloat<N> radius[2] = {points[0].row(3), points[1].row(3)};
   vfloat<N> size = radius[0] + radius[1];
   vfloat<N> end[2][3];
@@ -276,9 +282,9 @@ inline uint32_t near_lanes(const ReadyRay& ray, const float (&unit)[3],
 
 template <int N, typename Sieve>
 inline bool visit_curves(const ShapeSource& source, const float* rows, const IndexBlock<N>& block,
-                         const float (&unit)[3], uint32_t lanes, const Sieve& sieve) {
+                         const ShapeRay& ray, uint32_t lanes, const Sieve& sieve) {
   const PointRows<N> points[2] = {{rows}, {rows + 4 * N}};
-  lanes &= near_lanes(sieve.ray, unit, points);
+  lanes &= near_lanes(ray, points);
   for (; lanes; lanes &= lanes - 1) {
     const int lane = __builtin_ctz(lanes);
     const ShapePlace place = place_of(source, block.id[lane]);
@@ -290,12 +296,6 @@ inline bool visit_curves(const ShapeSource& source, const float* rows, const Ind
   return false;
 }
 
-/// A ray as the tests of shapes read it.
-struct ShapeRay {
-  WideRay<double> wide;
-  float unit[3];  ///< the direction, for curve segments
-};
-
 inline WideRay<double> widen_ray(const UnalignedRay& ray) {
   const float origin[3] = {ray.origin_x, ray.origin_y, ray.origin_z};
   const float direction[3] = {ray.direction_x, ray.direction_y, ray.direction_z};
@@ -306,6 +306,9 @@ inline ShapeRay shape_ray(const UnalignedRay& given, ShapeKind kind) {
   ShapeRay ray;
   ray.wide = widen_ray(given);
   if (kind != ShapeKind::kCurve) return ray;
+  ray.origin[0] = given.origin_x;
+  ray.origin[1] = given.origin_y;
+  ray.origin[2] = given.origin_z;
   const double inverse = 1.0 / square_root(ray.wide.squared);
   ray.unit[0] = static_cast<float>(ray.wide.direction.x * inverse);
   ray.unit[1] = static_cast<float>(ray.wide.direction.y * inverse);
@@ -325,7 +328,7 @@ inline bool visit_shapes(const ShapeSource& source, const TreeView& tree, ChildR
   const float* const rows = gathered.of(source, tree, block, lanes);
   if (source.kind == ShapeKind::kSphere) return visit_spheres(source, rows, block, lanes, sieve);
   if (source.kind == ShapeKind::kDisc) return visit_discs(source, rows, block, lanes, sieve);
-  return visit_curves(source, rows, block, ray.unit, lanes, sieve);
+  return visit_curves(source, rows, block, ray, lanes, sieve);
 }
 
 /// Fills in what a hit says of the shape: u, v and the normal, each rounded once.
