@@ -7,6 +7,7 @@
 
 #include "core/collect_boxes.h"
 #include "core/error.h"
+#include "core/motion_blocks.h"
 
 namespace kiwami {
 namespace {
@@ -104,6 +105,13 @@ void MotionTree::build(const AttachedGeometry* geometries, size_t count, const P
   Array<BuildPrimitive> boxes = collect(plan.memory, plan.parallel, extent_);
   tree_.build(std::move(boxes), extent_, common_steps(times.data(), times.size()), *this, plan);
   data_.boxes = tree_.boxes();
+  if (may_have_blocks(data_) &&
+      plan.parameters.whole(KIWAMI_PARAMETER_LAYOUT) != KIWAMI_LAYOUT_COMPACT) {
+    const WideTree& tree = tree_.tree().tree;
+    blocks_ = make_motion_blocks(data_, tree, plan.memory, plan.parallel);
+    data_.blocks = blocks_.data();
+    data_.leaf_begin = tree.node_bytes();
+  }
   if (plan.parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     validate(plan.memory, plan.parallel);
   }

@@ -39,6 +39,7 @@ class MotionTree final : private MovingSource {
   Array<GeometryRange> ranges_;
   Bounds extent_ = Bounds::empty();  ///< of all triangles at all times
   MotionPart data_{};
+  Array<float> blocks_;
   size_t numbered_count_ = 0;
   MovingTree tree_;
 };
