@@ -61,11 +61,13 @@ enum {
                                   * KIWAMI_REBRAID_* */
   KIWAMI_PARAMETER_REBRAID_BUDGET = 41, /* re-braiding: places in leaves beyond one an instance, at
                                          * most this part of the instances, 0 to 64 */
-  KIWAMI_PARAMETER_TWO_LEVEL = 42 /* 1: each mesh has a tree of its own, under a tree over these; a
-                                   * commit builds (a refit moves) the trees of meshes that have
-                                   * changed, alone, as kiwami_triangle_mesh_update_vertices,
-                                   * kiwami_geometry_set_mask and kiwami_scene_replace tell. The
-                                   * answers are the same; they come more slowly. 0: one tree */
+  KIWAMI_PARAMETER_TWO_LEVEL = 42, /* 1: each mesh has a tree of its own, under a tree over these; a
+                                    * commit builds (a refit moves) the trees of meshes that have
+                                    * changed, alone, as kiwami_triangle_mesh_update_vertices,
+                                    * kiwami_geometry_set_mask and kiwami_scene_replace tell. The
+                                    * answers are the same; they come more slowly. 0: one tree */
+  KIWAMI_PARAMETER_DIVIDE_TIME = 43 /* 1: what moves has boxes for the halves of a segment of time
+                                     * where that pays (the default); 0: for whole segments alone */
 };
 
 /* Re-braiding: where instances overlap, their scenes' trees are opened, so that the tree over the

@@ -148,9 +148,9 @@ CommittedScene::CommittedScene(Device& device, const AttachedGeometry* geometrie
   }
   show_tree(saved.parts.mesh_tree ? meshes_.tree().bounds : saved.tree.bounds);
   // What is mapped stays where it is.
-  const bool copies_shapes = image_->is_copy() && tree_.leaf_layout == LeafLayout::kTriangles;
+  const bool copies_primitives = image_->is_copy() && tree_.leaf_layout == LeafLayout::kTriangles;
   parts_.restore(geometries, count, saved.parts,
-                 {tree_.width, copies_shapes, memory_, device.parallel()});
+                 {tree_.width, copies_primitives, memory_, device.parallel()});
   if (saved.parts.mesh_tree) parts_.add(meshes_.tree(), meshes_.view());
   show_parts();
   describe();

@@ -7,6 +7,7 @@
 
 #include "core/collect_boxes.h"
 #include "core/error.h"
+#include "core/motion_blocks.h"
 #include "core/saved_scene.h"
 
 namespace kiwami {
@@ -100,9 +101,20 @@ void MotionTree::build(const AttachedGeometry* geometries, size_t count, const P
   Array<BuildPrimitive> boxes = collect(plan.memory, plan.parallel, extent_);
   tree_.build(std::move(boxes), extent_, time, *this, plan);
   data_.boxes = tree_.boxes();
+  if (plan.parameters.whole(KIWAMI_PARAMETER_LAYOUT) != KIWAMI_LAYOUT_COMPACT) {
+    copy_triangles(plan.memory, plan.parallel);
+  }
   if (plan.parameters.whole(KIWAMI_PARAMETER_VALIDATE_BUILD) != 0) {
     validate(plan.memory, plan.parallel);
   }
+}
+
+void MotionTree::copy_triangles(Memory& memory, const Parallel& parallel) {
+  if (meshes_.empty() || !may_have_blocks(data_)) return;
+  const WideTree& tree = tree_.tree().tree;
+  blocks_ = make_motion_blocks(data_, tree, memory, parallel);
+  data_.blocks = blocks_.data();
+  data_.leaf_begin = tree.node_bytes();
 }
 
 TimeSteps MotionTree::show(Memory& memory) {

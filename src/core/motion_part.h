@@ -26,6 +26,10 @@ class MotionTree final : private MovingSource {
   void restore(const AttachedGeometry* geometries, size_t count, const SavedTree* saved,
                std::span<const unsigned char> bounds, Memory& memory);
 
+  /// Copies triangles of two steps into blocks of their leaves' lanes, which rays read faster;
+  /// build() does it but for the compact layout.
+  void copy_triangles(Memory& memory, const Parallel& parallel);
+
   /// Points into this object.
   ScenePart view() const;
   /// Its bounds hold the triangles at all times.
@@ -52,6 +56,7 @@ class MotionTree final : private MovingSource {
   Array<GeometryRange> ranges_;
   Bounds extent_ = Bounds::empty();  ///< of all triangles at all times
   MotionPart data_{};
+  Array<float> blocks_;
   size_t numbered_count_ = 0;
   MovingTree tree_;
 };

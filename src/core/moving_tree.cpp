@@ -218,14 +218,17 @@ void MovingTree::build(Array<BuildPrimitive> boxes, const Bounds& extent, const 
   tree_ = build_part_tree(std::move(boxes), plan);
   tree_.bounds = extent;
   time_ = time;
-  if (plan.width == 4) bound<4>(source, plan.memory, plan.parallel);
-  if (plan.width == 8) bound<8>(source, plan.memory, plan.parallel);
-  if (plan.width == 16) bound<16>(source, plan.memory, plan.parallel);
+  if (plan.width == 4) bound<4>(source, plan);
+  if (plan.width == 8) bound<8>(source, plan);
+  if (plan.width == 16) bound<16>(source, plan);
 }
 
 template <int N>
-void MovingTree::bound(const MovingSource& source, Memory& memory, const Parallel& parallel) {
+void MovingTree::bound(const MovingSource& source, const PartPlan& plan) {
+  Memory& memory = plan.memory;
+  const Parallel& parallel = plan.parallel;
   fill<N>(source, memory, parallel);
+  if (plan.parameters.whole(KIWAMI_PARAMETER_DIVIDE_TIME) == 0) return;
   if (2 * time_.segment_count > kMostHalves) return;
   if (!is_promising<N>(source, memory, parallel)) return;
   const double area = mean_area<N>(memory, parallel);

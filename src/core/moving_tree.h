@@ -63,7 +63,7 @@ class MovingTree {
 
  private:
   template <int N>
-  void bound(const MovingSource& source, Memory& memory, const Parallel& parallel);
+  void bound(const MovingSource& source, const PartPlan& plan);
   template <int N>
   void fill(const MovingSource& source, Memory& memory, const Parallel& parallel);
   template <int N>

@@ -42,6 +42,7 @@ constexpr NumberedBounds kBounds[] = {
     {KIWAMI_PARAMETER_QUALITY, {0, 2, KIWAMI_QUALITY_BALANCED, true}},
     {KIWAMI_PARAMETER_REBRAID, {0, 2, KIWAMI_REBRAID_OFF, true}},
     {KIWAMI_PARAMETER_REBRAID_BUDGET, {0.0, 64.0, 2.0, false}},
+    {KIWAMI_PARAMETER_DIVIDE_TIME, {0, 1, 1, true}},
 };
 
 constexpr uint32_t kBalancedOptimizers[] = {KIWAMI_OPTIMIZER_REORDER_SATO};

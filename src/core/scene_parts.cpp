@@ -27,10 +27,11 @@ void SceneParts::restore(const AttachedGeometry* geometries, size_t count, const
   if (instances_.moving().can_be_hit()) views_[count_++] = instances_.moving().part();
   for (size_t kind = 0; kind < 3; ++kind) {
     shapes_[kind].restore(geometries, count, saved.shape_trees[kind], memory);
-    if (plan.copies_shapes) shapes_[kind].copy_shapes(memory, plan.parallel);
+    if (plan.copies_primitives) shapes_[kind].copy_shapes(memory, plan.parallel);
     add(shapes_[kind].tree(), shapes_[kind].view());
   }
   motion_.restore(geometries, count, saved.motion_tree, saved.motion_bounds, memory);
+  if (plan.copies_primitives) motion_.copy_triangles(memory, plan.parallel);
   add(motion_.tree(), motion_.view());
 }
 

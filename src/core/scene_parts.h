@@ -10,8 +10,8 @@ namespace kiwami {
 
 /// What the parts of a saved scene are restored with.
 struct RestorePlan {
-  uint32_t width;      ///< of the nodes: 4, 8 or 16
-  bool copies_shapes;  ///< where rays read them faster
+  uint32_t width;          ///< of the nodes: 4, 8 or 16
+  bool copies_primitives;  ///< shapes and moving triangles, to where rays read them faster
   Memory& memory;
   const Parallel& parallel;
 };

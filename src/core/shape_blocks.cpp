@@ -16,8 +16,7 @@ const ShapeView& view_of(const ShapeSource& source, uint32_t id) {
            1);
 }
 
-/// The rows of one shape. Of a file, lanes that no node refers to may have any id, and curves that
-/// none leads to any index.
+/// The rows of one shape.
 void read_rows(const ShapeSource& source, uint32_t id, float (&rows)[kMostShapeRows]) {
   const ShapeView& view = view_of(source, id);
   size_t first = id - view.first_id;
@@ -28,7 +27,6 @@ void read_rows(const ShapeSource& source, uint32_t id, float (&rows)[kMostShapeR
     uint32_t index;
     std::memcpy(&index, view.indices + first * view.index_stride, sizeof index);
     first = index;
-    if (first + 1 >= view.point_count) return;
   }
   std::memcpy(rows, view.points + first * view.point_stride, 4 * sizeof(float));
   if (source.kind == ShapeKind::kCurve) {
@@ -50,6 +48,7 @@ Array<float> make_shape_blocks(const ShapeSource& source, const WideTree& tree, 
       float* block = blocks.data() + number * row_count * width;
       for (size_t lane = 0; lane < width; ++lane) {
         float rows[kMostShapeRows] = {};
+        // Of a file, lanes that no node refers to may have any id.
         if (ids[lane] < id_count) read_rows(source, ids[lane], rows);
         for (size_t row = 0; row < row_count; ++row) block[row * width + lane] = rows[row];
       }

@@ -82,6 +82,10 @@ struct GeneralTraversal {
   /// Visits what the query has to see of a scene, by the ray as it is there, which is_traceable.
   /// Returns true if the query ended.
   bool visit_scene(const SceneView& scene, const UnalignedRay& ray) {
+    if (scene.tree.root.mask() == 0 && scene.part_count == 1) {
+      ReadyRay ready;
+      return visit_part(scene, scene.parts[0], scene.parts[0].tree.root, ray, ready);
+    }
     return visit_from(scene, ray, {0, InstanceStart::kAllTrees, {}});
   }
 
@@ -215,12 +219,11 @@ struct GeneralTraversal {
 
     /// A mesh alone, which most scenes show, is visited without a call that may call itself.
     bool visit_scene(const SceneView& shown, const kiwami_ray& local, const InstanceStart& start) {
-      if (shown.part_count != 0 || start.tree != InstanceStart::kAllTrees) {
-        return traversal.visit_from(shown, local, start);
-      }
-      if (shown.tree.root.mask() == 0) return false;
+      if (shown.part_count != 0) return traversal.visit_from(shown, local, start);
+      const ChildReference subtree = start.tree == 0 ? start.subtree : shown.tree.root;
+      if (subtree.mask() == 0) return false;
       ReadyRay local_ready;
-      return traversal.visit_triangles(shown, shown.tree.root, local, local_ready);
+      return traversal.visit_triangles(shown, subtree, local, local_ready);
     }
 
     bool visit_instance(const InstanceStart& start, const InstanceRecord& instance) {
@@ -309,7 +312,7 @@ struct GeneralTraversal {
       const IndexBlock<N>& block = index_leaf_at<N>(tree.memory, reference);
       GatheredBlock<N> frozen;
       frozen.source = block.id;
-      const uint32_t lanes = freezer.freeze(block, reference.mask(), frozen);
+      const uint32_t lanes = freezer.freeze(tree, block, reference.mask(), frozen);
       const bool is_done = query.visit_leaf(frozen, lanes, counting);
       best_bound = query.best_bound;
       return is_done;

@@ -142,20 +142,23 @@ __attribute__((noinline)) uint32_t freeze_each(const MotionPart& part, uint32_t 
 template <int N>
 class LeafFreezer {
  public:
-  LeafFreezer(const MotionPart& part, float time) : part_(part), time_(time) {
-    choose(part.meshes[0]);
-  }
+  LeafFreezer(const MotionPart& part, float time) : part_(part), time_(time) {}
 
   /// Returns the lanes that exist then. The other lanes are those of any triangles.
-  uint32_t freeze(const IndexBlock<N>& block, uint32_t lanes, LeafBlock<N>& frozen) {
+  uint32_t freeze(const TreeView& tree, const IndexBlock<N>& block, uint32_t lanes,
+                  LeafBlock<N>& frozen) {
     __builtin_memcpy(frozen.id, block.id, sizeof frozen.id);
     const uint32_t first = block.id[__builtin_ctz(lanes)];
-    if (part_.mesh_count > 1) {
-      const MovingMeshView& mesh = mesh_of(part_, first);
-      if (!is_of_one_mesh(block, lanes, mesh)) return freeze_any(first, lanes, frozen);
-      if (&mesh != mesh_) choose(mesh);
+    const MovingMeshView& mesh = part_.mesh_count == 1 ? part_.meshes[0] : mesh_of(part_, first);
+    if (part_.mesh_count != 1 && !is_of_one_mesh(block, lanes, mesh)) {
+      return freeze_any(first, lanes, frozen);
     }
+    if (&mesh != mesh_) choose(mesh);
     if (!exists_) return 0;
+    if (part_.blocks) {
+      freeze_block(tree, block, frozen);
+      return lanes;
+    }
     if (!mesh_->indices) return freeze_any(first, lanes, frozen);
     // Lanes that are not asked for may be empty, or of another mesh.
     const uint32_t of_first = first - mesh_->first_id;
@@ -182,6 +185,21 @@ class LeafFreezer {
         mesh.vertex_stride == DenseStrides::vertex() && mesh.index_stride == DenseStrides::index();
   }
 
+  /// Of meshes of two steps, whose corners stand in a block of their own.
+  void freeze_block(const TreeView& tree, const IndexBlock<N>& block, LeafBlock<N>& frozen) const {
+    const auto* const at = reinterpret_cast<const unsigned char*>(block.id);
+    // A leaf block has one row, of ids.
+    const uint64_t place = static_cast<uint64_t>(at - tree.memory) - part_.leaf_begin;
+    const float* row = part_.blocks + place / sizeof(uint32_t) * kMotionBlockRows;
+    const vfloat<N> of_start = broadcast<N>(1.0f - place_.fraction);
+    const vfloat<N> of_end = broadcast<N>(place_.fraction);
+    for (int k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis, row += N) {
+        store(frozen.position[k][axis], of_start * load<N>(row) + of_end * load<N>(row + 9 * N));
+      }
+    }
+  }
+
   static bool is_of_one_mesh(const IndexBlock<N>& block, uint32_t lanes,
                              const MovingMeshView& mesh) {
     for (; lanes; lanes &= lanes - 1) {
@@ -199,10 +217,10 @@ class LeafFreezer {
 
   const MotionPart& part_;
   float time_;
-  const MovingMeshView* mesh_;  ///< the last one
-  TimePlace place_;             ///< in its time
-  bool exists_;
-  bool is_dense_;
+  const MovingMeshView* mesh_ = nullptr;  ///< the last one
+  TimePlace place_{};                     ///< in its time
+  bool exists_ = false;
+  bool is_dense_ = false;
 };
 
 }  // namespace

@@ -26,13 +26,20 @@ struct MovingMeshView {
   uint32_t mask;
 };
 
+/// Rows of floats of a leaf block: the corners of its triangles, axis by axis, at the first step,
+/// then at the second.
+constexpr uint32_t kMotionBlockRows = 18;
+
 /// All moving meshes of a scene, by rising first_id, without gaps, and what their tree lacks: its
 /// own boxes are of no time in particular.
 struct MotionPart {
   const MovingMeshView* meshes;
   uint32_t mesh_count;
   MovingBoxes boxes;
-  SceneView scene;  ///< what a query needs to know of the triangles: ranges, masks
+  SceneView scene;      ///< what a query needs to know of the triangles: ranges, masks
+  const float* blocks;  ///< kMotionBlockRows rows of each leaf block, where all meshes have two
+                        ///< steps, so that rays need not read the buffers; nullptr: they do
+  uint64_t leaf_begin;  ///< of the leaf blocks, in bytes into the tree's memory
 };
 
 }  // namespace kiwami

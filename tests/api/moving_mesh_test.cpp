@@ -212,5 +212,58 @@ TEST(MovingMesh, TimeIsDividedWhereThatPays) {
   EXPECT_EQ(closest_hit(apart, ray).t, 10.0f);
 }
 
+/// Triangles in a grid, each of which goes to the place of another.
+kiwami_visits visits_of_exchange(const Device& device, double divides,
+                                 std::vector<kiwami_hit>& hits) {
+  constexpr uint32_t kSide = 16, kCount = kSide * kSide;
+  std::vector<float> vertices;
+  for (uint32_t step = 0; step < 2; ++step) {
+    for (uint32_t i = 0; i < kCount; ++i) {
+      const uint32_t place = step == 0 ? i : (i * 37 + 11) % kCount;
+      const auto x = static_cast<float>(place % kSide), y = static_cast<float>(place / kSide);
+      vertices.insert(vertices.end(), {x, y, 0, x + 0.5f, y, 0, x, y + 0.5f, 0});
+    }
+  }
+  kiwami_moving_mesh_desc desc;
+  EXPECT_EQ(kiwami_moving_mesh_desc_init(&desc, sizeof desc), KIWAMI_OK);
+  desc.vertices = vertices.data();
+  desc.vertex_count = 3 * kCount;
+  desc.triangle_count = kCount;
+  desc.step_count = 2;
+  const Scene scene = make_scene(device, make(device, desc));
+  EXPECT_EQ(kiwami_scene_set_parameter(scene.get(), KIWAMI_PARAMETER_DIVIDE_TIME, divides),
+            KIWAMI_OK);
+  EXPECT_EQ(kiwami_scene_commit(scene.get()), KIWAMI_OK) << last_error();
+  EXPECT_EQ(kiwami_scene_validate(scene.get()), KIWAMI_OK) << last_error();
+  std::vector<kiwami_ray> rays;
+  for (uint32_t i = 0; i < kCount; ++i) {
+    rays.push_back(
+        ray_along_z(0.1f + static_cast<float>(i % kSide), 0.1f + static_cast<float>(i / kSide)));
+    rays.back().origin_z = -10;
+    rays.back().time = static_cast<float>(i % 9) / 8.0f;
+  }
+  hits = closest_hits(scene, rays);
+  kiwami_visits visits{};
+  visits.struct_size = sizeof visits;
+  EXPECT_EQ(
+      kiwami_scene_count_visits(scene.get(), rays.data(), 0, rays.size(), 0, &visits, nullptr, 0),
+      KIWAMI_OK)
+      << last_error();
+  return visits;
+}
+
+TEST(MovingMesh, HasBoxesForHalvesOfTimeUnlessToldNot) {
+  const Device device = make_device();
+  std::vector<kiwami_hit> whole_hits, halves_hits;
+  const kiwami_visits whole = visits_of_exchange(device, 0, whole_hits);
+  const kiwami_visits halves = visits_of_exchange(device, 1, halves_hits);
+  EXPECT_LT(halves.node_visits, whole.node_visits);
+  EXPECT_LT(halves.leaf_visits, whole.leaf_visits);
+  ASSERT_EQ(whole_hits.size(), halves_hits.size());
+  EXPECT_EQ(
+      std::memcmp(whole_hits.data(), halves_hits.data(), whole_hits.size() * sizeof(kiwami_hit)),
+      0);
+}
+
 }  // namespace
 }  // namespace kiwami_api_tests

@@ -38,7 +38,8 @@ constexpr struct {
                    {"two_level", KIWAMI_PARAMETER_TWO_LEVEL},
                    {"quality", KIWAMI_PARAMETER_QUALITY},
                    {"rebraid", KIWAMI_PARAMETER_REBRAID},
-                   {"rebraid_budget", KIWAMI_PARAMETER_REBRAID_BUDGET}};
+                   {"rebraid_budget", KIWAMI_PARAMETER_REBRAID_BUDGET},
+                   {"divide_time", KIWAMI_PARAMETER_DIVIDE_TIME}};
 
 std::string parameter_names() {
   std::string names;

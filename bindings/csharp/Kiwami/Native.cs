@@ -935,6 +935,7 @@ internal static class Native {
   public const uint KIWAMI_PARAMETER_REBRAID = 40;
   public const uint KIWAMI_PARAMETER_REBRAID_BUDGET = 41;
   public const uint KIWAMI_PARAMETER_TWO_LEVEL = 42;
+  public const uint KIWAMI_PARAMETER_DIVIDE_TIME = 43;
   public const uint KIWAMI_REBRAID_OFF = 0;
   public const uint KIWAMI_REBRAID_FULL = 1;
   public const uint KIWAMI_REBRAID_ROOTS = 2;

@@ -65,6 +65,7 @@ final class Native {
   static final int KIWAMI_PARAMETER_REBRAID = 40;
   static final int KIWAMI_PARAMETER_REBRAID_BUDGET = 41;
   static final int KIWAMI_PARAMETER_TWO_LEVEL = 42;
+  static final int KIWAMI_PARAMETER_DIVIDE_TIME = 43;
   static final int KIWAMI_REBRAID_OFF = 0;
   static final int KIWAMI_REBRAID_FULL = 1;
   static final int KIWAMI_REBRAID_ROOTS = 2;
