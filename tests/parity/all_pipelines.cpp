@@ -28,15 +28,15 @@ std::string Pipeline::name() const {
 }
 
 BuildOptions Pipeline::options(uint32_t number, const std::vector<kiwami_ray>& rays) const {
-  static const std::vector<uint32_t> contractions = methods_of(KIWAMI_STAGE_CONTRACTION);
+  static const std::vector<uint32_t> kContractions = methods_of(KIWAMI_STAGE_CONTRACTION);
   constexpr uint32_t kWidths[] = {4, 8, 16};
-  const auto count = static_cast<uint32_t>(contractions.size());
+  const auto count = static_cast<uint32_t>(kContractions.size());
   BuildOptions options;
   options.width = kWidths[number % 3];
   options.merges_leaves = number / 3 % 2 == 0;
   options.validates = true;
   options.parameters = {{KIWAMI_PARAMETER_BUILDER, builder},
-                        {KIWAMI_PARAMETER_CONTRACTION, contractions[number / 6 % count]}};
+                        {KIWAMI_PARAMETER_CONTRACTION, kContractions[number / 6 % count]}};
   if (number / (6 * count) % 2 != 0) {
     options.parameters.emplace_back(KIWAMI_PARAMETER_LAYOUT, KIWAMI_LAYOUT_COMPACT);
   }
