@@ -40,7 +40,8 @@ struct ShapeSource {
 
 /// Rows of a block: x, y, z and radius of a point; then those of a segment's second point, or the
 /// normal of a disc.
-constexpr uint32_t shape_rows(ShapeKind kind) {
+// Always inlined: objects of several instruction sets must not share one copy.
+__attribute__((always_inline)) constexpr uint32_t shape_rows(ShapeKind kind) {
   return kind == ShapeKind::kSphere ? 4 : kind == ShapeKind::kDisc ? 7 : 8;
 }
 constexpr uint32_t kMostShapeRows = 8;
