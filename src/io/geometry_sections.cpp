@@ -69,9 +69,11 @@ void describe_buffers(const GeometryRecord& record,
   switch (kind) {
     case SavedKind::kTriangleMesh:
       extents[1] = {count, size_if(kHasIndices, kTripleSize)};
-      extents[2] = {
-          record.opacity_map_count,
-          size_if(kHasOpacity, opacity_map_bytes(record.opacity_format, record.opacity_level))};
+      // The level of none has not been looked at.
+      if ((record.flags & kHasOpacity) != 0) {
+        extents[2] = {record.opacity_map_count,
+                      opacity_map_bytes(record.opacity_format, record.opacity_level)};
+      }
       extents[3] = {count, size_if(kHasOpacityIndices, sizeof(uint32_t))};
       break;
     case SavedKind::kMovingMesh:
