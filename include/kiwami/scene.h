@@ -202,7 +202,7 @@ KIWAMI_API kiwami_result kiwami_scene_detach(kiwami_scene* scene, uint32_t geome
 
 /* Puts another geometry in the place of an attached one, under the same number. Takes effect with
  * the next commit, or refit where it has as many triangles.
- *   errors    INVALID_ARGUMENT: NULL, a geometry of another device, or no geometry has this number
+ *   errors    as of kiwami_scene_attach; INVALID_ARGUMENT: no geometry has this number
  * [one thread per object]; since 0.1 */
 KIWAMI_API kiwami_result kiwami_scene_replace(kiwami_scene* scene, uint32_t geometry_id,
                                               kiwami_geometry* geometry);

@@ -43,7 +43,7 @@ Scene::~Scene() {
   }
 }
 
-/// A cycle is closed by an attachment: what a geometry shows never changes, so until then the
+/// A cycle is closed by an attachment or a replacement: what a geometry shows never changes, so until then the
 /// scenes below it are a graph without any. They are looked at level by level, each once a level.
 void Scene::check_no_cycle(const Geometry& geometry) const {
   if (geometry.kind() != GeometryKind::kInstances) return;
@@ -101,6 +101,7 @@ void Scene::detach(uint32_t geometry_id) {
 
 void Scene::replace(uint32_t geometry_id, Geometry& geometry) {
   Slot& place = slot(geometry_id);
+  check_no_cycle(geometry);
   geometry.retain();
   place.geometry->release();
   place.geometry = &geometry;

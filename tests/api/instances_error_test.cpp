@@ -95,6 +95,10 @@ TEST_F(Instances, CyclesAreRefusedWhereTheyWouldClose) {
   ASSERT_EQ(kiwami_scene_attach(a.get(), shows_b.get(), nullptr), KIWAMI_OK);
   EXPECT_EQ(kiwami_scene_attach(b.get(), shows_a.get(), nullptr), KIWAMI_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(last_error(device_.get()), sentence);
+  EXPECT_EQ(kiwami_scene_replace(a.get(), 0, shows_a.get()), KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(last_error(device_.get()), sentence);
+  EXPECT_EQ(kiwami_scene_replace(b.get(), 0, shows_a.get()), KIWAMI_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(last_error(device_.get()), sentence);
   EXPECT_EQ(kiwami_scene_commit(a.get()), KIWAMI_OK);
 }
 
