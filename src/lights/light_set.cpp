@@ -11,7 +11,7 @@ Reference<LightSet> LightSet::create(Device& device) {
 
 Reference<LightSet> LightSet::copy_of(const LightSet& other, size_t more_lights,
                                       size_t more_instances) {
-  const Reference<LightSet> copy = create(*other.device_);
+  Reference<LightSet> copy = create(*other.device_);
   copy->lights.reserve(other.lights.size() + more_lights);
   copy->user_ids.reserve(other.lights.size() + more_lights);
   copy->instances.reserve(other.instances.size() + more_instances);
