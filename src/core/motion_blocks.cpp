@@ -4,17 +4,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/leaf_rows.h"
+
 namespace kiwami {
 namespace {
-
-constexpr size_t kBlocksAtOnce = 1024;
-
-const MovingMeshView& mesh_of(const MotionPart& part, uint32_t id) {
-  return *(std::upper_bound(
-               part.meshes, part.meshes + part.mesh_count, id,
-               [](uint32_t value, const MovingMeshView& mesh) { return value < mesh.first_id; }) -
-           1);
-}
 
 /// Nine numbers of the first step, then those of the second.
 void read_rows(const MovingMeshView& mesh, uint32_t primitive, float (&rows)[kMotionBlockRows]) {
@@ -33,6 +26,13 @@ void read_rows(const MovingMeshView& mesh, uint32_t primitive, float (&rows)[kMo
 
 }  // namespace
 
+const MovingMeshView& mesh_of(const MotionPart& part, uint32_t id) {
+  return *(std::upper_bound(
+               part.meshes, part.meshes + part.mesh_count, id,
+               [](uint32_t value, const MovingMeshView& mesh) { return value < mesh.first_id; }) -
+           1);
+}
+
 bool may_have_blocks(const MotionPart& part) {
   return std::all_of(part.meshes, part.meshes + part.mesh_count,
                      [](const MovingMeshView& mesh) { return mesh.time.segment_count == 1; });
@@ -40,26 +40,13 @@ bool may_have_blocks(const MotionPart& part) {
 
 Array<float> make_motion_blocks(const MotionPart& part, const WideTree& tree, Memory& memory,
                                 const Parallel& parallel) {
-  const size_t width = tree.leaf_width;
   const MovingMeshView& last = part.meshes[part.mesh_count - 1];
-  const uint32_t id_count = last.first_id + static_cast<uint32_t>(last.triangle_count);
-  Array<float> blocks(memory, tree.leaf_block_count * kMotionBlockRows * width);
-  parallel.for_blocks(tree.leaf_block_count, kBlocksAtOnce, [&](size_t begin, size_t end) {
-    for (size_t number = begin; number < end; ++number) {
-      const uint32_t* ids = tree.leaf_ids(number);
-      float* block = blocks.data() + number * kMotionBlockRows * width;
-      for (size_t lane = 0; lane < width; ++lane) {
-        float rows[kMotionBlockRows] = {};
-        // Of a file, lanes that no node refers to may have any id.
-        if (ids[lane] < id_count) {
-          const MovingMeshView& mesh = mesh_of(part, ids[lane]);
-          read_rows(mesh, ids[lane] - mesh.first_id, rows);
-        }
-        for (size_t row = 0; row < kMotionBlockRows; ++row) block[row * width + lane] = rows[row];
-      }
-    }
-  });
-  return blocks;
+  const auto id_count = static_cast<uint32_t>(last.first_id + last.triangle_count);
+  return make_leaf_rows<kMotionBlockRows>(tree, kMotionBlockRows, id_count, memory, parallel,
+                                          [&](uint32_t id, float(&rows)[kMotionBlockRows]) {
+                                            const MovingMeshView& mesh = mesh_of(part, id);
+                                            read_rows(mesh, id - mesh.first_id, rows);
+                                          });
 }
 
 }  // namespace kiwami

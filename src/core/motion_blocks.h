@@ -8,6 +8,9 @@
 
 namespace kiwami {
 
+/// The mesh of a triangle by its number in the part.
+const MovingMeshView& mesh_of(const MotionPart& part, uint32_t id);
+
 /// Whether all meshes have two steps, so that leaves may hold both.
 bool may_have_blocks(const MotionPart& part);
 

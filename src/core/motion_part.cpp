@@ -59,12 +59,6 @@ bool average(const MovingMeshView& mesh, uint32_t primitive, Bounds& mean, Bound
   return true;
 }
 
-const MovingMeshView& mesh_of(const MotionPart& part, uint32_t id) {
-  return *(std::upper_bound(part.meshes, part.meshes + part.mesh_count, id,
-                            [](uint32_t a, const MovingMeshView& b) { return a < b.first_id; }) -
-           1);
-}
-
 }  // namespace
 
 void MotionTree::number(const AttachedGeometry* geometries, size_t count, Memory& memory) {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/leaf_rows.h"
+
 namespace kiwami {
 namespace {
-
-constexpr size_t kBlocksAtOnce = 1024;
 
 const ShapeView& view_of(const ShapeSource& source, uint32_t id) {
   return *(std::upper_bound(
@@ -38,23 +38,10 @@ void read_rows(const ShapeSource& source, uint32_t id, float (&rows)[kMostShapeR
 
 Array<float> make_shape_blocks(const ShapeSource& source, const WideTree& tree, Memory& memory,
                                const Parallel& parallel) {
-  const size_t width = tree.leaf_width, row_count = shape_rows(source.kind);
   const ShapeView& last = source.views[source.view_count - 1];
-  const uint32_t id_count = last.first_id + static_cast<uint32_t>(last.count);
-  Array<float> blocks(memory, tree.leaf_block_count * row_count * width);
-  parallel.for_blocks(tree.leaf_block_count, kBlocksAtOnce, [&](size_t begin, size_t end) {
-    for (size_t number = begin; number < end; ++number) {
-      const uint32_t* ids = tree.leaf_ids(number);
-      float* block = blocks.data() + number * row_count * width;
-      for (size_t lane = 0; lane < width; ++lane) {
-        float rows[kMostShapeRows] = {};
-        // Of a file, lanes that no node refers to may have any id.
-        if (ids[lane] < id_count) read_rows(source, ids[lane], rows);
-        for (size_t row = 0; row < row_count; ++row) block[row * width + lane] = rows[row];
-      }
-    }
-  });
-  return blocks;
+  return make_leaf_rows<kMostShapeRows>(
+      tree, shape_rows(source.kind), last.first_id + last.count, memory, parallel,
+      [&](uint32_t id, float(&rows)[kMostShapeRows]) { read_rows(source, id, rows); });
 }
 
 }  // namespace kiwami
