@@ -4,10 +4,13 @@
 namespace kiwami_fuzz {
 namespace {
 
-Geometry made_by(kiwami_result result, kiwami_geometry* geometry) {
-  check(result);
-  require((result == KIWAMI_OK) == (geometry != nullptr), "a geometry and an error");
-  return Geometry(geometry);
+template <typename Desc>
+Geometry created_by(kiwami_result (*create)(kiwami_device*, const Desc*, kiwami_geometry**),
+                    kiwami_device* device, const Desc* desc) {
+  kiwami_geometry* made = nullptr;
+  const kiwami_result result = check(create(device, desc, &made));
+  require((result == KIWAMI_OK) == (made != nullptr), "a geometry and an error");
+  return Geometry(made);
 }
 
 /// Makes one field impossible, in a way that must be found before anything is read.
@@ -52,9 +55,7 @@ Geometry make_spheres(Arguments& arguments, kiwami_device* device) {
   if (arguments.rarely()) desc.point_stride = 1 + arguments.below(15);
   if (arguments.rarely()) desc.struct_size = arguments.wrong_size(sizeof desc);
   if (arguments.rarely()) desc.sphere_count = arguments.huge();
-  kiwami_geometry* made = nullptr;
-  const kiwami_result result = kiwami_spheres_create(device, &desc, &made);
-  return made_by(result, made);
+  return created_by(kiwami_spheres_create, device, &desc);
 }
 
 Geometry make_discs(Arguments& arguments, kiwami_device* device) {
@@ -68,9 +69,7 @@ Geometry make_discs(Arguments& arguments, kiwami_device* device) {
   desc.disc_count = count;
   if (arguments.rarely()) desc.normal_stride = 1 + arguments.below(11);
   if (arguments.rarely()) desc.disc_count = arguments.huge();
-  kiwami_geometry* made = nullptr;
-  const kiwami_result result = kiwami_discs_create(device, &desc, &made);
-  return made_by(result, made);
+  return created_by(kiwami_discs_create, device, &desc);
 }
 
 Geometry make_curves(Arguments& arguments, kiwami_device* device) {
@@ -87,9 +86,7 @@ Geometry make_curves(Arguments& arguments, kiwami_device* device) {
     desc.segment_count = indices.size();
   }
   if (arguments.rarely()) desc.segment_count = arguments.huge();
-  kiwami_geometry* made = nullptr;
-  const kiwami_result result = kiwami_curves_create(device, &desc, &made);
-  return made_by(result, made);
+  return created_by(kiwami_curves_create, device, &desc);
 }
 
 /// What the callbacks of a user geometry answer by.
@@ -135,9 +132,7 @@ Geometry make_moving_instances(Arguments& arguments, kiwami_device* device, kiwa
   if (arguments.rarely()) desc.time_end = arguments.number();
   if (arguments.rarely()) desc.step_stride = arguments.below(48);
   if (arguments.rarely()) desc.count = arguments.huge();
-  kiwami_geometry* made = nullptr;
-  const kiwami_result result = kiwami_moving_instances_create(device, &desc, &made);
-  return made_by(result, made);
+  return created_by(kiwami_moving_instances_create, device, &desc);
 }
 
 /// Mostly ones that a ray can be carried by.
@@ -177,10 +172,7 @@ Geometry make_mesh(Arguments& arguments, kiwami_device* device) {
   desc.mask = arguments.rarely() ? arguments.whole() : ~0u;
   if (arguments.below(2) == 0) desc.indices = indices.data();
   if (arguments.rarely()) spoil(arguments, desc);
-  kiwami_geometry* made = nullptr;
-  const kiwami_result result =
-      kiwami_triangle_mesh_create(device, arguments.rarely() ? nullptr : &desc, &made);
-  return made_by(result, made);
+  return created_by(kiwami_triangle_mesh_create, device, arguments.rarely() ? nullptr : &desc);
 }
 
 Geometry make_moving_mesh(Arguments& arguments, kiwami_device* device) {
@@ -198,9 +190,7 @@ Geometry make_moving_mesh(Arguments& arguments, kiwami_device* device) {
   if (arguments.rarely()) desc.time_begin = arguments.number();
   if (arguments.rarely()) desc.vertex_stride = 1 + arguments.below(11);
   if (arguments.rarely()) desc.triangle_count = arguments.huge();
-  kiwami_geometry* made = nullptr;
-  const kiwami_result result = kiwami_moving_mesh_create(device, &desc, &made);
-  return made_by(result, made);
+  return created_by(kiwami_moving_mesh_create, device, &desc);
 }
 
 Geometry make_shapes(Arguments& arguments, kiwami_device* device) {
@@ -226,10 +216,9 @@ Geometry make_user_geometry(Arguments& arguments, kiwami_device* device) {
   desc.destroy = [](void* user) { delete static_cast<Whim*>(user); };
   desc.user = whim.get();
   if (arguments.rarely()) desc.count = arguments.huge();
-  kiwami_geometry* made = nullptr;
-  const kiwami_result result = kiwami_user_geometry_create(device, &desc, &made);
+  Geometry made = created_by(kiwami_user_geometry_create, device, &desc);
   if (made) whim.release();
-  return made_by(result, made);
+  return made;
 }
 
 Geometry make_instances(Arguments& arguments, kiwami_device* device, kiwami_scene* scene) {
@@ -247,9 +236,7 @@ Geometry make_instances(Arguments& arguments, kiwami_device* device, kiwami_scen
   if (arguments.rarely()) desc.mask = arguments.whole();
   if (arguments.rarely()) desc.transform_stride = 1 + arguments.below(47);
   if (arguments.rarely()) desc.count = arguments.huge();
-  kiwami_geometry* made = nullptr;
-  const kiwami_result result = kiwami_instances_create(device, &desc, &made);
-  return made_by(result, made);
+  return created_by(kiwami_instances_create, device, &desc);
 }
 
 void set_opacity(Arguments& arguments, kiwami_geometry* mesh) {
